@@ -1,0 +1,2 @@
+//! MLS-MPM.
+pub mod math;

@@ -1,0 +1,85 @@
+//! A vector of `D` reals.
+
+use super::real::Real;
+use core::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
+
+/// `D` components; in lanes, `D` registers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vector<R, const D: usize>(pub [R; D]);
+
+impl<R: Real, const D: usize> Vector<R, D> {
+    /// The vector whose component `i` is `f(i)`.
+    #[inline(always)]
+    pub fn from_fn(f: impl FnMut(usize) -> R) -> Self {
+        Self(core::array::from_fn(f))
+    }
+    /// Σ aᵢ bᵢ.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> R {
+        let mut sum = self[0] * other[0];
+        for i in 1..D {
+            sum += self[i] * other[i];
+        }
+        sum
+    }
+    /// Euclidean length.
+    #[inline(always)]
+    pub fn norm(self) -> R {
+        self.dot(self).sqrt()
+    }
+}
+
+impl<R, const D: usize> Index<usize> for Vector<R, D> {
+    type Output = R;
+    #[inline(always)]
+    fn index(&self, i: usize) -> &R {
+        &self.0[i]
+    }
+}
+impl<R, const D: usize> IndexMut<usize> for Vector<R, D> {
+    #[inline(always)]
+    fn index_mut(&mut self, i: usize) -> &mut R {
+        &mut self.0[i]
+    }
+}
+impl<R: Real, const D: usize> Add for Vector<R, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self::from_fn(|i| self[i] + other[i])
+    }
+}
+impl<R: Real, const D: usize> Sub for Vector<R, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self::from_fn(|i| self[i] - other[i])
+    }
+}
+impl<R: Real, const D: usize> Neg for Vector<R, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::from_fn(|i| -self[i])
+    }
+}
+/// Times a number.
+impl<R: Real, const D: usize> Mul<R> for Vector<R, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: R) -> Self {
+        Self::from_fn(|i| self[i] * factor)
+    }
+}
+impl<R: Real, const D: usize> AddAssign for Vector<R, D> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+impl<R: Real, const D: usize> SubAssign for Vector<R, D> {
+    #[inline(always)]
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
