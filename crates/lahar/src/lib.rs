@@ -1,2 +1,21 @@
-//! MLS-MPM.
+//! Fluids, jelly and snow by the Moving Least Squares Material Point Method, in 2D and 3D.
+
+pub mod boundary;
+pub mod diagnostics;
+mod dispatch;
+pub mod error;
+pub mod material;
 pub mod math;
+pub mod particles;
+pub mod setup;
+pub mod simulation;
+
+pub use boundary::{Contact, Domain, Sides, WallStyle};
+pub use diagnostics::Diagnostics;
+pub use error::{DtLimit, Failure, SetupError};
+pub use material::{Material, Model};
+pub use particles::{Data, Field, Snapshot};
+pub use setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
+pub use simulation::{
+    Advance, Command, Memory, PhaseTimes, Pointer, PointerAction, Simulate, Simulation,
+};

@@ -1,0 +1,88 @@
+//! Constitutive models: from deformation to stress, and what a substep does to deformation.
+//!
+//! A model is one file that implements [`ConstitutiveModel`], once, for every kind of number and
+//! dimension. Scene files name models by the closed enum [`Model`].
+
+mod corotated;
+mod fluid;
+mod neo_hookean;
+mod none;
+mod snow;
+mod strain;
+
+pub use corotated::Corotated;
+pub use fluid::{Eos, Fluid, JacobianUpdate};
+pub use neo_hookean::NeoHookean;
+pub use none::Dust;
+pub use snow::{HardeningFrom, Snow};
+pub use strain::{Dilatation, DisplacementGradient, PlasticGradient, Strain};
+
+use crate::math::{Matrix, Real};
+
+/// A law: stress and energy from strain, and how strain follows the motion.
+///
+/// Formulas are generic over [`Real`]: they run on one scalar or on a register of particles.
+/// Branch by [`Real::select`], not by `if`.
+pub trait ConstitutiveModel<const D: usize>: Copy + Send + Sync {
+    /// What the model remembers of a particle's deformation.
+    type Strain<R: Real>: Strain<R, D>;
+
+    /// Kirchhoff stress τ = (∂Φ/∂F) Fᵀ = J σ \[Pa\], plus viscous stress of the velocity gradient
+    /// (`velocity_gradient[(i, j)]` = ∂v_i/∂x_j \[1/s\]).
+    fn kirchhoff_stress<R: Real>(
+        &self,
+        strain: Self::Strain<R>,
+        velocity_gradient: Matrix<R, D>,
+    ) -> Matrix<R, D>;
+
+    /// The strain after a substep: (7), then the return mapping. `increment` is Δt ∂v/∂x.
+    fn advance<R: Real>(&self, strain: Self::Strain<R>, increment: Matrix<R, D>)
+    -> Self::Strain<R>;
+
+    /// Energy Φ per rest volume \[Pa\].
+    fn energy_density<R: Real>(&self, strain: Self::Strain<R>) -> R;
+
+    /// An upper bound on (speed of elastic waves)² × density at rest \[Pa\]: the largest
+    /// stiffness ∂²Φ/∂F² in this state, in the current configuration.
+    fn wave_modulus<R: Real>(&self, strain: Self::Strain<R>) -> R;
+
+    /// Dynamic viscosity \[Pa s\], the largest of the law's, for the time step.
+    fn viscosity(&self) -> f64 {
+        0.0
+    }
+}
+
+/// A scene's named choice of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// As scenes and outputs call it.
+    pub name: String,
+    /// Density at rest \[kg/m³; kg/m² in 2D per metre of depth\].
+    pub density: f64,
+    /// The law.
+    pub model: Model,
+}
+
+/// The models that scene files can name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Model {
+    /// No stress at all.
+    Dust(Dust),
+    /// Weakly compressible fluid.
+    Fluid(Fluid),
+    /// Fixed corotated elasticity ("jelly").
+    Corotated(Corotated),
+    /// Neo-Hookean elasticity.
+    NeoHookean(NeoHookean),
+    /// Elastoplastic snow.
+    Snow(Snow),
+}
+
+/// Lamé's parameters from Young's modulus and Poisson's ratio: (λ, μ) \[Pa\].
+pub fn lame(youngs_modulus: f64, poisson_ratio: f64) -> (f64, f64) {
+    let (e, nu) = (youngs_modulus, poisson_ratio);
+    (
+        e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
+        e / (2.0 * (1.0 + nu)),
+    )
+}

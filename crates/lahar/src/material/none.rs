@@ -1,0 +1,36 @@
+//! No law: particles that carry mass and momentum and do not push ("dust").
+
+use super::{ConstitutiveModel, Dilatation};
+use crate::math::{Matrix, Real};
+
+/// τ = 0. The change of volume is kept, since it is what a plot of dust is coloured by.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Dust;
+
+impl<const D: usize> ConstitutiveModel<D> for Dust {
+    type Strain<R: Real> = Dilatation<R>;
+
+    #[inline(always)]
+    fn kirchhoff_stress<R: Real>(&self, strain: Dilatation<R>, _: Matrix<R, D>) -> Matrix<R, D> {
+        Matrix::scaled_identity(strain.jacobian_minus_one.zero())
+    }
+
+    #[inline(always)]
+    fn advance<R: Real>(&self, strain: Dilatation<R>, increment: Matrix<R, D>) -> Dilatation<R> {
+        let e = strain.jacobian_minus_one;
+        let change = increment.determinant_of_identity_plus_minus_one();
+        Dilatation {
+            jacobian_minus_one: e + change + e * change,
+        }
+    }
+
+    #[inline(always)]
+    fn energy_density<R: Real>(&self, strain: Dilatation<R>) -> R {
+        strain.jacobian_minus_one.zero()
+    }
+
+    #[inline(always)]
+    fn wave_modulus<R: Real>(&self, strain: Dilatation<R>) -> R {
+        strain.jacobian_minus_one.zero()
+    }
+}

@@ -1,0 +1,155 @@
+//! Particles: the one table of their fields, storage, and snapshots for everything outside.
+
+/// What a particle has, as exports, checkpoints and plots name it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Field {
+    /// Number that stays with a particle for life.
+    Id,
+    /// Body it belongs to.
+    Body,
+    /// Material it is made of.
+    Material,
+    /// Where it is.
+    Position,
+    /// Its velocity.
+    Velocity,
+    /// C, the velocity gradient that APIC carries: `[i][j]` = ∂v_i/∂x_j.
+    Affine,
+    /// J = V/V⁰.
+    Jacobian,
+    /// F; of the elastic part for plastic models.
+    DeformationGradient,
+    /// J_P of plastic models; 1 for others.
+    PlasticJacobian,
+    /// −tr σ/d of the Cauchy stress.
+    Pressure,
+    /// Its mass.
+    Mass,
+    /// Its volume at rest V⁰.
+    Volume0,
+}
+
+/// How many numbers a field has a particle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// One.
+    Scalar,
+    /// D.
+    Vector,
+    /// D × D, row by row.
+    Matrix,
+}
+
+impl Shape {
+    /// Numbers a particle, in `dimension` dimensions.
+    pub fn len(self, dimension: usize) -> usize {
+        match self {
+            Self::Scalar => 1,
+            Self::Vector => dimension,
+            Self::Matrix => dimension * dimension,
+        }
+    }
+    /// Never: a field has at least one number.
+    pub fn is_empty(self) -> bool {
+        false
+    }
+}
+
+/// One line of the table of fields.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldInfo {
+    /// Which field.
+    pub field: Field,
+    /// Its name in files.
+    pub name: &'static str,
+    /// Its shape.
+    pub shape: Shape,
+    /// Its unit in 3D.
+    pub unit: &'static str,
+}
+
+macro_rules! fields {
+    ($($field:ident $name:literal $shape:ident $unit:literal;)*) => {
+        /// Every field, in the order of files.
+        pub const FIELDS: &[FieldInfo] = &[$(FieldInfo { field: Field::$field, name: $name, shape: Shape::$shape, unit: $unit }),*];
+    };
+}
+
+fields! {
+    Position "position" Vector "m";
+    Velocity "velocity" Vector "m/s";
+    Affine "affine" Matrix "1/s";
+    Jacobian "J" Scalar "1";
+    DeformationGradient "deformation_gradient" Matrix "1";
+    PlasticJacobian "plastic_J" Scalar "1";
+    Pressure "pressure" Scalar "Pa";
+    Mass "mass" Scalar "kg";
+    Volume0 "volume0" Scalar "m^3";
+    Material "material" Scalar "";
+    Body "body" Scalar "";
+    Id "id" Scalar "";
+}
+
+impl Field {
+    /// Its line in [`FIELDS`].
+    pub fn info(self) -> &'static FieldInfo {
+        FIELDS
+            .iter()
+            .find(|info| info.field == self)
+            .expect("every field is in the table")
+    }
+}
+
+/// The numbers of one field, particle after particle.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Data {
+    /// Single precision.
+    F32(Vec<f32>),
+    /// Double precision.
+    F64(Vec<f64>),
+    /// Whole numbers.
+    U32(Vec<u32>),
+}
+
+impl Data {
+    /// As `f64`, whatever they are.
+    pub fn to_f64(&self) -> Vec<f64> {
+        match self {
+            Self::F32(v) => v.iter().map(|&x| f64::from(x)).collect(),
+            Self::F64(v) => v.clone(),
+            Self::U32(v) => v.iter().map(|&x| f64::from(x)).collect(),
+        }
+    }
+    /// As `f32`, whatever they are.
+    pub fn to_f32(&self) -> Vec<f32> {
+        match self {
+            Self::F32(v) => v.clone(),
+            Self::F64(v) => v.iter().map(|&x| x as f32).collect(),
+            Self::U32(v) => v.iter().map(|&x| x as f32).collect(),
+        }
+    }
+}
+
+/// A copy of chosen fields at one moment, rows by ascending id.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    /// Simulated time \[s\].
+    pub time: f64,
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Rows.
+    pub count: usize,
+    /// The fields asked for, in that order. Positions are `f64` always; what else is real has the
+    /// simulation's precision.
+    pub columns: Vec<(Field, Data)>,
+}
+
+impl Snapshot {
+    /// The numbers of `field`, if it was asked for and any particle has it.
+    pub fn get(&self, field: Field) -> Option<&Data> {
+        self.columns
+            .iter()
+            .find(|(f, _)| *f == field)
+            .map(|(_, data)| data)
+    }
+}
