@@ -4,6 +4,7 @@ pub mod boundary;
 pub mod diagnostics;
 mod dispatch;
 pub mod error;
+pub mod kernel;
 pub mod material;
 pub mod math;
 pub mod particles;
