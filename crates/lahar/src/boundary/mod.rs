@@ -1,6 +1,7 @@
 //! What stops the material: contact laws × shapes, as plain data.
 
 mod contact;
+mod pointer;
 pub(crate) mod walls;
 
 /// The box that holds a scene.
