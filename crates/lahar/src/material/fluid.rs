@@ -83,18 +83,23 @@ impl Fluid {
         }
     }
 
+    /// J − 1 at the pressure p \[Pa\], by the equation of state without its cut-off: what a body at
+    /// rest starts from. Infinite where no expansion brings the pressure so low.
+    pub fn jacobian_minus_one_at(&self, pressure: f64) -> f64 {
+        let p = pressure / self.bulk_modulus;
+        match self.eos {
+            Eos::Tait { gamma } if gamma * p > -1.0 => libm::expm1(-libm::log1p(gamma * p) / gamma),
+            Eos::Tait { .. } => f64::INFINITY,
+            Eos::LinearJ => -p,
+        }
+    }
+
     /// J − 1 where the fluid pulls with `tension`; infinite if it never pulls so hard.
     fn cut_off(&self) -> f64 {
-        let pull = self.tension / self.bulk_modulus;
-        if pull == 0.0 {
-            return 0.0;
-        }
-        match self.eos {
-            Eos::Tait { gamma } if gamma * pull < 1.0 => {
-                libm::expm1(-libm::log1p(-gamma * pull) / gamma)
-            }
-            Eos::Tait { .. } => f64::INFINITY,
-            Eos::LinearJ => pull,
+        if self.tension == 0.0 {
+            0.0
+        } else {
+            self.jacobian_minus_one_at(-self.tension)
         }
     }
 

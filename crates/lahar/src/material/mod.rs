@@ -5,8 +5,10 @@
 
 mod corotated;
 mod fluid;
+mod model;
 mod neo_hookean;
 mod none;
+pub mod presets;
 mod snow;
 mod strain;
 
@@ -14,6 +16,7 @@ pub use corotated::Corotated;
 pub use fluid::{Eos, Fluid, JacobianUpdate, SMALLEST_JACOBIAN};
 pub use neo_hookean::{LOGARITHM_ENDS, NeoHookean};
 pub use none::Dust;
+pub use presets::{PRESETS, preset};
 pub use snow::{HardeningFrom, Snow};
 pub use strain::{Dilatation, DisplacementGradient, PlasticGradient, Strain};
 
@@ -79,6 +82,25 @@ pub enum Model {
     /// Elastoplastic snow.
     Snow(Snow),
 }
+
+/// Runs `$body` with `$law` bound to the law inside the [`Model`] `$model`, compiled once for each
+/// type of law: the one place where a run-time choice of a law becomes static dispatch.
+///
+/// ```text
+/// for_model!(material.model, law => self.scatter_with(&law))
+/// ```
+macro_rules! for_model {
+    ($model:expr, $law:ident => $body:expr) => {
+        match $model {
+            $crate::material::Model::Dust($law) => $body,
+            $crate::material::Model::Fluid($law) => $body,
+            $crate::material::Model::Corotated($law) => $body,
+            $crate::material::Model::NeoHookean($law) => $body,
+            $crate::material::Model::Snow($law) => $body,
+        }
+    };
+}
+pub(crate) use for_model;
 
 /// Lamé's parameters from Young's modulus \[Pa\] and Poisson's ratio: (λ, μ) \[Pa\]. In 2D these
 /// are those of plane strain.
