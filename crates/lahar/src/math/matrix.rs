@@ -11,8 +11,16 @@ pub struct Matrix<R, const D: usize>(pub [Vector<R, D>; D]);
 impl<R: Real, const D: usize> Matrix<R, D> {
     /// The matrix whose entry in row `i`, column `j` is `f(i, j)`.
     #[inline(always)]
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "unrolls; iterators' adaptors were slower"
+    )]
     pub fn from_fn(mut f: impl FnMut(usize, usize) -> R) -> Self {
-        Self(core::array::from_fn(|j| Vector::from_fn(|i| f(i, j))))
+        let mut columns = [Vector::from_fn(|i| f(i, 0)); D];
+        for j in 1..D {
+            columns[j] = Vector::from_fn(|i| f(i, j));
+        }
+        Self(columns)
     }
     /// `value` times the identity.
     #[inline(always)]
@@ -150,7 +158,15 @@ impl<R: Real, const D: usize> Mul<Vector<R, D>> for Matrix<R, D> {
 impl<R: Real, const D: usize> Mul for Matrix<R, D> {
     type Output = Self;
     #[inline(always)]
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "unrolls; iterators' adaptors were slower"
+    )]
     fn mul(self, other: Self) -> Self {
-        Self(core::array::from_fn(|j| self * other.0[j]))
+        let mut columns = [self * other.0[0]; D];
+        for j in 1..D {
+            columns[j] = self * other.0[j];
+        }
+        Self(columns)
     }
 }
