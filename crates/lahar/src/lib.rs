@@ -8,6 +8,7 @@ pub mod kernel;
 pub mod material;
 pub mod math;
 pub mod particles;
+pub mod reference;
 pub mod setup;
 pub mod simulation;
 
