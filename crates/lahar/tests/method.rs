@@ -500,7 +500,7 @@ fn k4_energy_apic<E: Engine<2>>(start: Start, model: Model) {
 }
 
 /// FLIP: the grid does not see all of the particles' kinetic energy, so its staggered energy may
-/// exceed its start by what the grid comes to see (measured: 3 % of a strongly stretching body).
+/// exceed its start by what the grid comes to see (measured: up to 4 % of a strongly stretching body).
 /// With the particles' own kinetic energy in its place it is never above its start.
 fn k4_energy_flip<E: Engine<2>>(start: Start) {
     for (blend, cfl) in [(1.0, 0.5), (1.0, 0.1), (0.99, 0.5)] {
