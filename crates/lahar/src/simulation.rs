@@ -574,7 +574,7 @@ fn check<const D: usize>(setup: &Setup<D>, laws: usize) -> Result<Walls<D>, Setu
         .domain
         .as_ref()
         .map_or_else(|| Ok(Walls::unbounded()), |domain| Walls::new(domain, dx))?;
-    let shortest = crate::grid::tile_edge::<D>(4) as i64;
+    let shortest = crate::kernel::STENCIL as i64;
     for axis in 0..D {
         if walls.period[axis].is_some_and(|period| period < shortest) {
             return setup_error(
