@@ -1,1 +1,3 @@
-//! placeholder
+//! Everything between the lahar simulator and the disk: particle arrays, run folders, pictures.
+
+pub mod npz;
