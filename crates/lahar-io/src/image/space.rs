@@ -6,7 +6,7 @@
 //! The smoothed depth makes a dense crowd of balls one surface, while lone ones stay balls: smoothing stops at jumps.
 
 use super::camera::{self, Camera, add_scaled, cross, dot, sub, unit};
-use super::palette::{self, BACKGROUND, ToScreen};
+use super::palette::{self, ToScreen};
 use super::{Drawn, Picture, Scenery, Style};
 
 /// Radius of a ball, in sizes of a particle.
@@ -34,6 +34,7 @@ pub(super) struct Space {
     walls: bool,
     /// Towards the lamp.
     lamp: [f32; 3],
+    background: palette::Colour,
 }
 
 /// What each sample shows.
@@ -62,6 +63,7 @@ impl Space {
             up: scenery.up,
             walls: scenery.walls,
             lamp: unit(lamp),
+            background: scenery.background,
         }
     }
 
@@ -121,7 +123,11 @@ impl Space {
             let away = (place - place.round()).abs() * step;
             line = line.max((1.0 - away / width).clamp(0.0, 1.0));
         }
-        palette::mix(palette::linear(FLOOR), palette::linear(FLOOR_LINE), line)
+        palette::mix(
+            palette::linear(palette::lighter(self.background, 0.09)),
+            palette::linear(palette::lighter(self.background, 0.2)),
+            line,
+        )
     }
 
     /// The box's twelve edges, faint, hidden by what is before them.
@@ -180,10 +186,7 @@ impl Space {
     }
 }
 
-const FLOOR: palette::Colour = [0x1D, 0x42, 0x57];
-const FLOOR_LINE: palette::Colour = [0x33, 0x5C, 0x72];
 const EDGE: palette::Colour = [0x6E, 0x93, 0xA6];
-const SKY: palette::Colour = [0x1A, 0x40, 0x55];
 
 /// 1, 2 or 5 times a power of ten, near `length`.
 fn nice(length: f32) -> f32 {
@@ -412,8 +415,8 @@ impl Eye {
         particles: &Drawn,
         shadow: &Shadow,
     ) -> Vec<[f32; 3]> {
-        let far = palette::linear(BACKGROUND);
-        let sky = palette::linear(SKY);
+        let far = palette::linear(space.background);
+        let sky = palette::linear(palette::lighter(space.background, 0.07));
         let diagonal = dot(sub(space.max, space.min), sub(space.max, space.min)).sqrt();
         let nearest = dot(sub(space.camera.target, self.from), self.forward) - 0.5 * diagonal;
         let mut light = Vec::with_capacity(seen.depth.len());
