@@ -1,7 +1,10 @@
-//! What goes in and out of the simulator: scene files, particles to start from, outputs.
+//! Everything between the lahar simulator and the disk: scenes and particles to start from, run folders, pictures.
 
 pub mod builtin;
 pub mod error;
+pub mod image;
+pub mod npz;
+pub mod output;
 pub mod particle_list;
 pub mod sampling;
 pub mod scene;
