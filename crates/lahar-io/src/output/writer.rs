@@ -79,8 +79,10 @@ pub fn film_pace(frame_rate: f64, frames: u64) -> Pace {
 /// What a writer has written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Written {
-    /// Frames, pictures or not.
+    /// Frames, files of particles and pictures or not.
     pub frames: u64,
+    /// Files of particles.
+    pub particles: u64,
     /// Pictures kept as PNG.
     pub images: u64,
     /// Whether there is a film.
@@ -210,9 +212,10 @@ impl Work {
     fn frame(&mut self, job: &Job) -> Result<(), OutputError> {
         if let Some(snapshot) = &job.snapshot {
             self.files(job.index, snapshot)?;
-            self.written.frames += 1;
         }
-        self.diagnostics.push(&job.diagnostics)
+        self.diagnostics.push(&job.diagnostics)?;
+        self.written.frames += 1;
+        Ok(())
     }
 
     fn files(&mut self, index: u64, snapshot: &Snapshot) -> Result<(), OutputError> {
@@ -220,6 +223,7 @@ impl Work {
         if let Some(compression) = self.plan.npz {
             let path = folder.frames().join(frame_name(index, "npz"));
             write_frame(&path, snapshot, compression)?;
+            self.written.particles += 1;
         }
         let due = |every: u64| index.is_multiple_of(every.max(1));
         if let Some(pictures) = self.plan.pictures.as_ref().filter(|p| due(p.every)) {
@@ -327,6 +331,7 @@ mod tests {
             written,
             Written {
                 frames: 9,
+                particles: 9,
                 images: 9,
                 film: true
             }

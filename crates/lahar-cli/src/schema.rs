@@ -1,0 +1,10 @@
+//! `lahar schema`.
+
+use std::process::ExitCode;
+
+use crate::error::CliError;
+pub(crate) fn schema() -> Result<ExitCode, CliError> {
+    Err(CliError::Machine(
+        "this version has no schema yet".to_owned(),
+    ))
+}
