@@ -25,8 +25,10 @@ mod keys;
 mod plan;
 mod preset;
 mod read;
+mod reference;
 
 pub(crate) use document::shorten;
+pub use reference::{docs, docs_of, schema};
 
 use crate::builtin;
 use crate::error::{SceneError, nearest};
