@@ -187,7 +187,7 @@ const fn key(
 }
 
 const fn later(name: &'static str) -> Key {
-    key(name, Kind::Later, "", WhenAbsent::Words(""), "")
+    key(name, Kind::Later, "", Words(""), "")
 }
 
 const fn only_3d(mut key: Key) -> Key {

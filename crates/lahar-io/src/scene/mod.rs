@@ -25,8 +25,10 @@ mod keys;
 mod plan;
 mod preset;
 mod read;
+mod reference;
 
 pub(crate) use document::shorten;
+pub use reference::{docs, docs_of, schema};
 
 use crate::builtin;
 use crate::error::{SceneError, nearest};
@@ -34,7 +36,7 @@ use document::{Document, Span, json_table};
 use lahar::{Isa, Simulate, Simulation, TimeStep};
 use plan::Plan;
 use read::Reader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Bounds on what a scene may ask for; a matter of the machine, not of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -210,9 +212,7 @@ impl Scene {
         limits: &Limits,
     ) -> Result<Self, SceneError> {
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
-        read_scene(text, name, overrides, limits, &|path| {
-            std::fs::read(folder.join(path)).map_err(|error| io_words(&error))
-        })
+        read_scene(text, name, overrides, limits, &Files::Folder(folder))
     }
 
     /// Reads a built-in scene by its name, or a file.
@@ -233,14 +233,8 @@ impl Scene {
         limits: &Limits,
     ) -> Result<Self, SceneError> {
         if let Some(scene) = builtin::find(what) {
-            return read_scene(scene.text, scene.name, overrides, limits, &|path| {
-                scene
-                    .files
-                    .iter()
-                    .find(|(name, _)| *name == path)
-                    .map(|(_, text)| text.as_bytes().to_vec())
-                    .ok_or_else(|| "built-in scenes have no such file".to_owned())
-            });
+            let files = Files::Embedded(scene.files);
+            return read_scene(scene.text, scene.name, overrides, limits, &files);
         }
         Self::parse_within(&read_text(what)?, what, overrides, limits)
     }
@@ -458,17 +452,17 @@ fn read_scene(
     name: &str,
     overrides: &[(String, String)],
     limits: &Limits,
-    file: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    files: &Files<'_>,
 ) -> Result<Scene, SceneError> {
     let mut document = Document::parse(text, name, overrides)?;
     let Document { sources, root } = &mut document;
     let dimension = check::check(sources, root)?;
     let reader = Reader::new(sources, root, Span::default());
     if dimension == 2 {
-        let plan = Plan::<2>::read(&reader, limits, file)?;
+        let plan = Plan::<2>::read(&reader, limits, files)?;
         scene(&document, plan, AnyPlan::D2, (text, name, overrides))
     } else {
-        let plan = Plan::<3>::read(&reader, limits, file)?;
+        let plan = Plan::<3>::read(&reader, limits, files)?;
         scene(&document, plan, AnyPlan::D3, (text, name, overrides))
     }
 }
@@ -654,6 +648,41 @@ fn read_text(path: &str) -> Result<String, SceneError> {
         ))
         .hint("a scene is a TOML text file")
     })
+}
+
+/// Where the files that a scene names are.
+pub(crate) enum Files<'a> {
+    /// Beside the scene's own.
+    Folder(&'a Path),
+    /// In the program.
+    Embedded(&'static [(&'static str, &'static str)]),
+}
+
+impl Files<'_> {
+    /// The content of a file, or why there is none.
+    pub(crate) fn bytes(&self, name: &str) -> Result<Vec<u8>, String> {
+        match self {
+            Self::Folder(folder) => {
+                std::fs::read(folder.join(name)).map_err(|error| io_words(&error))
+            }
+            Self::Embedded(files) => match files.iter().find(|(file, _)| *file == name) {
+                Some((_, text)) => Ok(text.as_bytes().to_vec()),
+                None => Err("built-in scenes have no such file".to_owned()),
+            },
+        }
+    }
+
+    /// Its path, if it is there.
+    pub(crate) fn path(&self, name: &str) -> Result<PathBuf, String> {
+        match self {
+            Self::Folder(folder) => match std::fs::metadata(folder.join(name)) {
+                Ok(info) if info.is_file() => Ok(folder.join(name)),
+                Ok(_) => Err("it is a folder".to_owned()),
+                Err(error) => Err(io_words(&error)),
+            },
+            Self::Embedded(_) => Err("built-in scenes have no such file".to_owned()),
+        }
+    }
 }
 
 /// What the system says, without its number.

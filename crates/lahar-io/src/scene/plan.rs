@@ -1,8 +1,8 @@
 //! From a checked document to a plan in numbers of one dimension: domain, materials, bodies.
 
-use super::Limits;
 use super::keys::MODULI;
 use super::read::Reader;
+use super::{Files, Limits};
 use crate::error::{SceneError, nearest};
 use crate::particle_list::ParticleList;
 use crate::sampling::{Sampling, expected_count};
@@ -124,7 +124,7 @@ impl<const D: usize> Plan<D> {
     pub(crate) fn read(
         scene: &Reader<'_>,
         limits: &Limits,
-        file: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+        files: &Files<'_>,
     ) -> Result<Self, SceneError> {
         let dx = scene.number("dx")?;
         let mut warnings = Vec::new();
@@ -168,7 +168,7 @@ impl<const D: usize> Plan<D> {
                 &materials,
                 domain.as_ref(),
                 dx,
-                file,
+                (files, limits),
                 &mut warnings,
             )?;
             if bodies.iter().any(|other: &Body<D>| other.name == body.name) {
@@ -735,7 +735,7 @@ fn read_body<const D: usize>(
     materials: &[Material],
     domain: Option<&Domain<D>>,
     dx: f64,
-    file: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    (files, limits): (&Files<'_>, &Limits),
     warnings: &mut Vec<String>,
 ) -> Result<Body<D>, SceneError> {
     let name = table
@@ -781,7 +781,7 @@ fn read_body<const D: usize>(
         (Some(_), Some(_)) => return Err(table.error_at_key("particles", "a body has a \"shape\" or \"particles\", not both")),
         (None, None) => return Err(table.error(format!("body \"{name}\" has no shape")).hint("add, for instance, shape = { box = { min = [0.0, 0.0], max = [1.0, 1.0] } }, or particles = \"start.csv\"")),
         (Some(shape), None) => read_shape_source(&name, table, &shape, clip, dx)?,
-        (None, Some(path)) => Source::List(read_list(table, path, volume, &clip, file, warnings)?),
+        (None, Some(path)) => Source::List(read_list(table, path, volume, &clip, (files, limits), warnings)?),
     };
     Ok(Body {
         name,
@@ -988,7 +988,7 @@ fn read_list<const D: usize>(
     path: &str,
     volume: Volume,
     clip: &Bounds<D>,
-    file: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    (files, limits): (&Files<'_>, &Limits),
     warnings: &mut Vec<String>,
 ) -> Result<ParticleList<D>, SceneError> {
     for key in ["particles_per_cell", "spacing", "count"] {
@@ -999,24 +999,25 @@ fn read_list<const D: usize>(
             ));
         }
     }
-    let bytes = file(path).map_err(|reason| {
-        table
-            .error_at(
-                "particles",
-                format!("cannot read \"{}\": {reason}", super::shorten(path)),
-            )
-            .hint("particle lists are found from the scene's folder")
-    })?;
+    let cannot = |reason: String| {
+        let error = table.error_at(
+            "particles",
+            format!("cannot read \"{}\": {reason}", super::shorten(path)),
+        );
+        error.hint("particle lists are found from the scene's folder")
+    };
     let mut list = if path.ends_with(".csv") {
+        let bytes = files.bytes(path).map_err(cannot)?;
         match core::str::from_utf8(&bytes) {
             Ok(text) => crate::particle_list::parse_csv(text, path)?,
             Err(error) => {
-                return Err(SceneError::of_file(
-                    path,
-                    format!("this is not text: byte {} is no UTF-8", error.valid_up_to()),
-                ));
+                let message = format!("this is not text: byte {} is no UTF-8", error.valid_up_to());
+                return Err(SceneError::of_file(path, message));
             }
         }
+    } else if path.ends_with(".npz") {
+        let file = files.path(path).map_err(cannot)?;
+        crate::particle_list::read_npz(&file, limits.memory)?
     } else {
         return Err(table.error_at("particles", "a particle list is a .csv or .npz file"));
     };
