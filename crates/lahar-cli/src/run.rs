@@ -316,7 +316,11 @@ fn report(
             ),
             (
                 written.particles > 0,
-                format!("{}/ ({} frames)", folder.frames().display(), written.particles),
+                format!(
+                    "{}/ ({} frames)",
+                    folder.frames().display(),
+                    written.particles
+                ),
             ),
             (true, folder.diagnostics().display().to_string()),
             (true, folder.record().display().to_string()),

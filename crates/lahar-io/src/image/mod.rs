@@ -378,8 +378,9 @@ mod tests {
         let renderer = Renderer::new(scenery(2), Style::default());
         let picture = renderer.render(&snapshot(2, &[1.0, 0.5], 0.01, &[1]));
         let pixels = 640.0 / 2.1;
-        // (1 − r²/h²)² is at the threshold .45 where r = .574 h, h = 1.45 sizes.
-        let radius = 0.574 * 1.45 * 0.1 * pixels;
+        // (1 − r²/h²)² is at the threshold.
+        let part = (1.0 - f64::from(plane::THRESHOLD).sqrt()).sqrt();
+        let radius = part * f64::from(plane::REACH) * 0.1 * pixels;
         // Half red light or more.
         let area = count(&picture, |p| p[0] > 0xB0) as f64;
         let expected = std::f64::consts::PI * f64::powi(radius, 2);

@@ -8,14 +8,14 @@ use std::ops::Range;
 use super::palette::{self, ToScreen};
 use super::{Drawn, Picture, Scenery, Style};
 
-/// Reach h of a bump, in sizes of a particle: neighbours of a lattice still fill when pulled apart by half.
-const REACH: f32 = 1.45;
+/// Reach h of a bump, in sizes of a particle: gaps between neighbours up to two and a half sizes wide are filled.
+pub(super) const REACH: f32 = 2.0;
 
 /// Material is where bumps sum to this.
-const THRESHOLD: f32 = 0.45;
+pub(super) const THRESHOLD: f32 = 0.75;
 
 /// Half the width of the soft edge, in sums of bumps.
-const SOFT: f32 = 0.12;
+const SOFT: f32 = 0.1;
 
 /// Room around the domain, in parts of its larger side.
 const MARGIN: f64 = 0.025;
