@@ -2,6 +2,7 @@
 
 pub mod lanes;
 pub mod matrix;
+pub mod near_one;
 pub mod polar;
 pub mod real;
 mod split;
