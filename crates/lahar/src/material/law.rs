@@ -5,7 +5,7 @@
 //! code is a sum of laws and transfers and not their product, and so that laws from outside the
 //! crate run as fast as ours.
 
-use super::{ConstitutiveModel, Model, Strain};
+use super::{ConstitutiveModel, Model, Strain, for_model};
 use crate::dispatch::on_level;
 use crate::math::{Lanes, Matrix, Real};
 use fearless_simd::{Level, Simd};
@@ -69,13 +69,7 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
 
 /// The law of a built-in model.
 pub(crate) fn built_in<T: Lanes, const D: usize>(model: &Model) -> Box<dyn Law<T, D>> {
-    match *model {
-        Model::Dust(model) => law(model),
-        Model::Fluid(model) => law(model),
-        Model::Corotated(model) => law(model),
-        Model::NeoHookean(model) => law(model),
-        Model::Snow(model) => law(model),
-    }
+    for_model!(*model, model => law(model))
 }
 
 /// The law of any model, your own included; see [`crate::Simulation::with_laws`].
@@ -193,9 +187,9 @@ fn stress_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     let mut p = 0;
     while p < count {
         let left = count - p;
-        let load = |column: &Vec<T>| load_part(simd, &column[start + p..], left);
-        let lanes = M::Strain::read(|column| load(&strain[column]));
-        let gradient = Matrix::from_fn(|i, j| load(&affine[j * D + i]));
+        let lanes = M::Strain::read(|column| load_part(simd, &strain[column][start + p..], left));
+        let gradient =
+            Matrix::from_fn(|i, j| load_part(simd, &affine[j * D + i][start + p..], left));
         let tau = model.kirchhoff_stress(lanes, gradient);
         for j in 0..D {
             for i in 0..D {
