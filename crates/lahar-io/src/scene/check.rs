@@ -35,49 +35,8 @@ pub(crate) fn check(sources: &Sources, root: &mut Table) -> Result<usize, SceneE
     Ok(dimension)
 }
 
-/// The keys that `root` gives, as (section, key), before defaults are filled in.
-pub(crate) fn used_keys(root: &Table) -> Vec<(&'static str, String)> {
-    fn visit(table: &Table, section: &'static Section, used: &mut Vec<(&'static str, String)>) {
-        for entry in &table.entries {
-            used.push((section.name, entry.key.clone()));
-            if let Some(key) = section.key(&entry.key) {
-                visit_kind(&entry.node, key.kind, used);
-            }
-        }
-    }
-    fn visit_kind(node: &Node, kind: Kind, used: &mut Vec<(&'static str, String)>) {
-        match (kind, &node.value) {
-            (Kind::Table(section), Value::Table(table)) => visit(table, section, used),
-            (Kind::Tables(section), Value::List(list)) => {
-                for node in list {
-                    visit_kind(node, Kind::Table(section), used);
-                }
-            }
-            (Kind::Materials, Value::Table(table)) => {
-                for entry in &table.entries {
-                    let Value::Table(material) = &entry.node.value else {
-                        continue;
-                    };
-                    if let Some(section) = model_of(material).and_then(model_section) {
-                        visit(material, section, used);
-                    }
-                }
-            }
-            (Kind::OneOf(kinds), _) => {
-                if let Some(kind) = kinds.iter().find(|kind| accepts(**kind, &node.value)) {
-                    visit_kind(node, *kind, used);
-                }
-            }
-            _ => {}
-        }
-    }
-    let mut used = Vec::new();
-    visit(root, &SCENE, &mut used);
-    used
-}
-
 /// The model that a material names, itself or by its preset.
-fn model_of(material: &Table) -> Option<&str> {
+pub(crate) fn model_of(material: &Table) -> Option<&str> {
     let text = |key: &str| match &material.get(key)?.value {
         Value::Text(text) => Some(text.as_str()),
         _ => None,
@@ -526,7 +485,7 @@ fn replaced_moduli(material: &Table, base: &Table) -> Vec<&'static str> {
 }
 
 /// Whether a value has the TOML type of a kind.
-fn accepts(kind: Kind, value: &Value) -> bool {
+pub(crate) fn accepts(kind: Kind, value: &Value) -> bool {
     match kind {
         Kind::Text | Kind::Color | Kind::Word(_) => matches!(value, Value::Text(_)),
         Kind::Number(_) => matches!(value, Value::Number(_) | Value::Integer(_)),

@@ -26,6 +26,8 @@ mod plan;
 mod preset;
 mod read;
 mod reference;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use document::shorten;
 pub use reference::{docs, docs_of, schema};
