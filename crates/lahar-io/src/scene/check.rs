@@ -145,15 +145,11 @@ impl Check<'_> {
                 !matches!(key.kind, Kind::Later) && !(key.only_3d && self.dimension == 2)
             })
         };
+        if let Some(places) = places(&entry.key, section) {
+            return Err(error.hint(format!("\"{}\" belongs {places}", entry.key)));
+        }
         if let Some(near) = nearest(&entry.key, available().map(|key| key.name)) {
             return Err(error.hint(format!("did you mean \"{near}\"?")));
-        }
-        if let Some(other) = SECTIONS.iter().find(|other| {
-            other
-                .key(&entry.key)
-                .is_some_and(|key| !matches!(key.kind, Kind::Later))
-        }) {
-            return Err(error.hint(format!("\"{}\" belongs {}", entry.key, place(other))));
         }
         let names: Vec<&str> = available().map(|key| key.name).collect();
         Err(error.hint(format!("known here: {}", names.join(", "))))
@@ -376,7 +372,10 @@ impl Check<'_> {
         }
         let error = self.sources.error(
             span,
-            format!("\"{}\" is not a {name}", super::document::shorten(text)),
+            format!(
+                "\"{}\" is no value of \"{name}\"",
+                super::document::shorten(text)
+            ),
         );
         Err(match nearest(text, words.iter().copied()) {
             Some(near) => error.hint(format!("did you mean \"{near}\"?")),
@@ -503,12 +502,32 @@ fn unit(key: &Key) -> String {
     }
 }
 
-fn place(section: &Section) -> String {
-    if section.name == SCENE.name {
-        section.header.to_owned()
-    } else {
-        format!("in {}", section.header)
+/// Where a key is known that is not known in `here`.
+fn places(name: &str, here: &Section) -> Option<String> {
+    let knows = |section: &&&Section| {
+        section
+            .key(name)
+            .is_some_and(|key| !matches!(key.kind, Kind::Later))
+    };
+    // Of a material, other models tell more than tables of other things.
+    let kin = |section: &&&Section| {
+        section.name.starts_with("material: ") && here.name.starts_with("material: ")
+    };
+    let models: Vec<&str> = SECTIONS
+        .iter()
+        .filter(kin)
+        .filter(knows)
+        .filter_map(|section| section.name.strip_prefix("material: "))
+        .collect();
+    if !models.is_empty() {
+        return Some(format!("to model {}", models.join(", ")));
     }
+    let other = SECTIONS.iter().find(knows)?;
+    Some(if other.name == SCENE.name {
+        other.header.to_owned()
+    } else {
+        format!("in {}", other.header)
+    })
 }
 
 /// The colour "#rrggbb".

@@ -354,6 +354,15 @@ impl Scene {
         value
     }
 
+    /// A material as the simulator has it.
+    #[cfg(test)]
+    fn material(&self, index: usize) -> &lahar::Material {
+        match &self.plan {
+            AnyPlan::D2(plan) => &plan.materials[index],
+            AnyPlan::D3(plan) => &plan.materials[index],
+        }
+    }
+
     /// Frames of a run, the first one at time 0 not counted.
     pub fn frames(&self) -> u64 {
         (self.duration * self.frame_rate).round().max(1.0) as u64
@@ -489,7 +498,7 @@ fn scene<const D: usize>(
             name: material.name.clone(),
             model: model.unwrap_or_default().to_owned(),
             density: material.density,
-            wave_speed: plan::wave_speed::<D>(material),
+            wave_speed: material.sound_speed(),
             color,
         })
         .collect();
@@ -644,12 +653,18 @@ fn read_text(path: &str) -> Result<String, SceneError> {
     }
     let bytes = std::fs::read(path).map_err(|error| fail(&io_words(&error)))?;
     String::from_utf8(bytes).map_err(|error| {
-        fail(&format!(
-            "this is no scene: byte {} is no UTF-8 text",
-            error.utf8_error().valid_up_to()
-        ))
-        .hint("a scene is a TOML text file")
+        let at = error.utf8_error().valid_up_to();
+        not_text(path, error.as_bytes(), at).hint("a scene is a TOML text file")
     })
+}
+
+/// An error at the first byte that is no text, number `at`.
+pub(crate) fn not_text(path: &str, bytes: &[u8], at: usize) -> SceneError {
+    /// Bytes shown after it.
+    const AFTER: usize = 100;
+    let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(at + AFTER)]);
+    let message = format!("this is not a text file: byte {at} is no UTF-8");
+    SceneError::at(path, &shown, at, at + 1, message)
 }
 
 /// Where the files that a scene names are.

@@ -91,4 +91,40 @@ mod tests {
             NAMES
         );
     }
+
+    /// The simulator has presets too, for those who write no scenes: same names, same numbers.
+    #[test]
+    fn numbers_are_those_of_the_simulator() {
+        use lahar::Model;
+        let own: Vec<&str> = NAMES
+            .iter()
+            .copied()
+            .filter(|name| *name != "dust")
+            .collect();
+        let simulators: Vec<&str> = lahar::material::PRESETS
+            .iter()
+            .map(|(name, _)| *name)
+            .collect();
+        assert_eq!(own, simulators);
+        for name in own {
+            let text = format!(
+                "dimension = 3\ndx = 0.1\n[materials.m]\npreset = \"{name}\"\n[[bodies]]\nmaterial = \"m\"\n\
+                 shape = {{ ball = {{ center = [0, 0, 0], radius = 1 }} }}"
+            );
+            let material = crate::scene::Scene::parse(&text, "a", &[])
+                .unwrap()
+                .material(0)
+                .clone();
+            let theirs = lahar::material::preset(name, material.sound_speed()).unwrap();
+            assert_eq!(material.density, theirs.density, "{name}");
+            match (material.model, theirs.model) {
+                (Model::Fluid(a), Model::Fluid(mut b)) => {
+                    assert!((a.bulk_modulus / b.bulk_modulus - 1.0).abs() < 1e-12);
+                    b.bulk_modulus = a.bulk_modulus;
+                    assert_eq!(a, b, "{name}");
+                }
+                (a, b) => assert_eq!(a, b, "{name}"),
+            }
+        }
+    }
 }
