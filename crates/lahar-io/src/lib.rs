@@ -1,1 +1,11 @@
-//! placeholder
+//! Everything between the lahar simulator and the disk: scenes and particles to start from, run folders, pictures.
+
+pub mod builtin;
+pub mod error;
+pub mod image;
+pub mod npz;
+pub mod output;
+pub mod particle_list;
+pub mod sampling;
+pub mod scene;
+pub mod shape;

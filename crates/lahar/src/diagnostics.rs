@@ -1,5 +1,11 @@
 //! What the whole of the particles comes to: one row of diagnostics.csv. In f64, in a fixed order.
 
+use crate::math::Lanes;
+use crate::setup::Transfer;
+use crate::simulation::{Simulation, three};
+use crate::store::{Layout, PerParticle};
+use crate::transfer::scatter::{What, scatter};
+
 /// Totals at one moment. Vectors have three components; in 2D the third is zero, and angular
 /// momentum is its third component.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,4 +42,100 @@ pub struct Diagnostics {
     pub escaped: u64,
     /// Their mass \[kg\].
     pub escaped_mass: f64,
+}
+
+/// A row, now. The particles must be inside their tiles.
+pub(crate) fn measure<T: Lanes, const D: usize>(simulation: &mut Simulation<T, D>) -> Diagnostics {
+    let volume = filled_volume(simulation);
+    let control = &mut simulation.control;
+    let (dt_min, dt_limit) = control.shortest_since_asked();
+    let mut row = Diagnostics {
+        time: control.time(),
+        substeps: control.substeps,
+        dt_min,
+        dt_limit: dt_limit.name(),
+        volume,
+        escaped: simulation.escaped.count,
+        escaped_mass: simulation.escaped.mass,
+        ..Diagnostics::default()
+    };
+    let dx = simulation.setup.dx;
+    let spin = match simulation.setup.transfer {
+        Transfer::Apic if simulation.scheme.inverse_inertia().is_finite() => {
+            dx * dx / simulation.scheme.inverse_inertia()
+        }
+        _ => 0.0,
+    };
+    let gravity = three(simulation.setup.gravity);
+    for group in &simulation.groups {
+        row.particles += group.len() as u64;
+        row.mass += match &group.mass {
+            PerParticle::Uniform(mass) => mass.to_f64() * group.len() as f64,
+            PerParticle::Each(_) => 0.0,
+        };
+        let mut each_mass = 0.0;
+        let at = |column: usize, index: usize| group.columns[column][index].to_f64();
+        let mut strain = vec![0.0; group.law.strain_columns()];
+        for run in &group.runs {
+            for p in run.rows() {
+                let cells = group.cells(run.block, p, simulation.scheme.offset());
+                let x = three(core::array::from_fn::<f64, D, _>(|axis| {
+                    simulation.origin[axis] + dx * cells[axis]
+                }));
+                let v = three(core::array::from_fn::<f64, D, _>(|axis| {
+                    at(Layout::velocity(D) + axis, p)
+                }));
+                let c = |i: usize, j: usize| {
+                    if i < D && j < D {
+                        at(Layout::affine(D) + j * D + i, p)
+                    } else {
+                        0.0
+                    }
+                };
+                let m = group.mass.get(p).to_f64();
+                if matches!(group.mass, PerParticle::Each(_)) {
+                    each_mass += m;
+                }
+                for axis in 0..3 {
+                    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+                    row.momentum[axis] += m * v[axis];
+                    row.angular_momentum[axis] +=
+                        m * (x[i] * v[j] - x[j] * v[i] + spin * (c(j, i) - c(i, j)));
+                    row.potential_energy -= m * gravity[axis] * x[axis];
+                }
+                let speed_squared = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+                row.kinetic_energy += 0.5 * m * speed_squared;
+                row.max_speed = row.max_speed.max(speed_squared);
+                for (column, value) in strain.iter_mut().enumerate() {
+                    *value = at(Layout::strain(D) + column, p);
+                }
+                let state = group.law.describe(&strain, [[0.0; D]; D]);
+                let volume0 = group.volume0.get(p).to_f64();
+                row.elastic_energy += volume0 * state.energy_density;
+                row.particle_volume += volume0 * state.jacobian;
+            }
+        }
+        row.mass += each_mass;
+    }
+    row.max_speed = row.max_speed.sqrt();
+    row
+}
+
+/// Σ over nodes of min(1, rest volume at the node / dxᴰ) dxᴰ: the space that is filled.
+fn filled_volume<T: Lanes, const D: usize>(simulation: &mut Simulation<T, D>) -> f64 {
+    for group in &simulation.groups {
+        let tiles = simulation.grid.tiles_mut();
+        scatter(
+            group,
+            simulation.scheme,
+            simulation.isa,
+            0.0,
+            What::Volume,
+            tiles,
+        );
+    }
+    let cell = simulation.setup.dx.powi(D as i32);
+    simulation
+        .grid
+        .sum_nodes(simulation.isa, 0, |volume| volume.min(cell))
 }

@@ -3,10 +3,19 @@
 //! [`Simulation`] is the typed one; [`Simulate`] is the same without the types of numbers and
 //! dimension, for outlets that open whatever scene they are given.
 
+use crate::boundary::walls::Walls;
 use crate::diagnostics::Diagnostics;
-use crate::error::{DtLimit, Failure};
+use crate::dispatch;
+use crate::error::{DtLimit, Failure, SetupError};
+use crate::grid::{Grid, NodeForces, NodePointer};
+use crate::material::{IsaToken, Law, built_in};
+use crate::math::{Lanes, Vector};
 use crate::particles::{Field, Snapshot};
-use crate::setup::Isa;
+use crate::setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
+use crate::sort::{DRIFT_LIMIT, Escaped, Sorter, in_range};
+use crate::step::StepControl;
+use crate::store::{Group, Layout, Run, block_edge, locate};
+use crate::transfer::Scheme;
 
 /// What can be told to a running simulation. Vectors have three components; 2D ignores the third.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,8 +105,8 @@ pub trait Simulate: Send {
     fn command(&mut self, command: Command);
     /// A copy of `fields`, rows by ascending id.
     fn snapshot(&self, fields: &[Field]) -> Snapshot;
-    /// Totals now.
-    fn diagnostics(&self) -> Diagnostics;
+    /// Totals now. Sorts first if the next substep would: the run's bits do not change.
+    fn diagnostics(&mut self) -> Diagnostics;
     /// Gives the simulation a clock that returns seconds, for [`Simulate::phase_times`].
     fn set_clock(&mut self, clock: fn() -> f64);
     /// Seconds by phase since the clock was given.
@@ -119,24 +128,49 @@ pub struct Memory {
     pub particle_bytes: usize,
 }
 
-// ---- scaffold: free fall only, replaced by the engine ----
-use crate::error::SetupError;
-use crate::math::Lanes;
-use crate::particles::Data;
-use crate::setup::{ParticleBatch, Setup, TimeStep};
-
 /// A simulation in `D` dimensions with numbers of type `T`.
-pub struct Simulation<T, const D: usize> {
-    setup: Setup<D>,
-    x: Vec<[f64; D]>,
-    v: Vec<[f64; D]>,
-    m: Vec<f64>,
-    vol: Vec<f64>,
-    mat: Vec<u32>,
-    body: Vec<u32>,
-    time: f64,
-    substeps: u64,
-    marker: core::marker::PhantomData<T>,
+///
+/// ```
+/// use lahar::{Material, ParticleBatch, Setup, Simulate, Simulation, material::Corotated, Model};
+///
+/// let jelly = Material { name: "jelly".into(), density: 1000.0, model: Model::Corotated(Corotated { lambda: 1e4, mu: 1e4 }) };
+/// let mut setup = Setup::<2>::new(0.1, vec![jelly]);
+/// setup.gravity = [0.0, -9.81];
+/// let particles = ParticleBatch { position: vec![[0.2, 0.3], [0.25, 0.3]], volume: vec![0.0025], ..Default::default() };
+/// let mut simulation = Simulation::<f32, 2>::new(setup, &[particles])?;
+/// simulation.advance_to(0.1)?;
+/// assert!(simulation.diagnostics().momentum[1] < 0.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Simulation<T: Lanes, const D: usize> {
+    pub(crate) setup: Setup<D>,
+    pub(crate) walls: Walls<D>,
+    /// Where node 0 is \[m\].
+    pub(crate) origin: [f64; D],
+    pub(crate) scheme: Scheme,
+    pub(crate) isa: IsaToken,
+    pub(crate) grid: Grid<T, D>,
+    pub(crate) groups: Vec<Group<T, D>>,
+    sorter: Sorter<T, D>,
+    /// Cells that particles may have moved since they were sorted.
+    drift: f64,
+    pointer: Option<Pointer>,
+    pub(crate) escaped: Escaped,
+    pub(crate) control: StepControl,
+    next_id: u32,
+    clock: Option<fn() -> f64>,
+    times: PhaseTimes,
+}
+
+pub(crate) fn three<const D: usize>(a: [f64; D]) -> [f64; 3] {
+    core::array::from_fn(|i| if i < D { a[i] } else { 0.0 })
+}
+
+fn setup_error<R>(key: &str, message: String) -> Result<R, SetupError> {
+    Err(SetupError {
+        key: key.into(),
+        message,
+    })
 }
 
 impl<T: Lanes, const D: usize> Simulation<T, D> {
@@ -145,47 +179,485 @@ impl<T: Lanes, const D: usize> Simulation<T, D> {
     /// # Errors
     /// Names the key that cannot be simulated.
     pub fn new(setup: Setup<D>, batches: &[ParticleBatch<D>]) -> Result<Self, SetupError> {
-        let mut s = Self {
-            setup,
-            x: vec![],
-            v: vec![],
-            m: vec![],
-            vol: vec![],
-            mat: vec![],
-            body: vec![],
-            time: 0.0,
-            substeps: 0,
-            marker: core::marker::PhantomData,
+        let laws = setup
+            .materials
+            .iter()
+            .map(|material| built_in(&material.model))
+            .collect();
+        Self::with_laws(setup, laws, batches)
+    }
+
+    /// As [`Simulation::new`], with `laws[i]` in place of the model of material `i`: for models
+    /// from outside the crate, made into laws by [`crate::material::law`].
+    ///
+    /// # Errors
+    /// Names the key that cannot be simulated.
+    pub fn with_laws(
+        setup: Setup<D>,
+        laws: Vec<Box<dyn Law<T, D>>>,
+        batches: &[ParticleBatch<D>],
+    ) -> Result<Self, SetupError> {
+        const { assert!(D == 2 || D == 3, "two or three dimensions") };
+        let walls = check(&setup, laws.len())?;
+        let Some(level) = dispatch::level(setup.isa) else {
+            return setup_error("isa", format!("this machine has no {}", setup.isa.name()));
         };
-        for b in batches {
-            for (i, &x) in b.position.iter().enumerate() {
-                s.x.push(x);
-                s.v.push(match b.velocity.len() {
-                    0 => [0.0; D],
-                    1 => b.velocity[0],
-                    _ => b.velocity[i],
-                });
-                let vol = if b.volume.len() == 1 {
-                    b.volume[0]
-                } else {
-                    b.volume[i]
-                };
-                s.vol.push(vol);
-                s.m.push(match b.mass.len() {
-                    0 => vol * s.setup.materials[b.material].density,
-                    1 => b.mass[0],
-                    _ => b.mass[i],
-                });
-                s.mat.push(b.material as u32);
-                s.body.push(b.body);
+        let scheme = Scheme {
+            kernel: setup.kernel,
+            force: setup.force,
+            transfer: setup.transfer,
+            dx: setup.dx,
+        };
+        let groups = laws
+            .into_iter()
+            .zip(&setup.materials)
+            .map(|(law, m)| Group::new(law, m.density))
+            .collect::<Vec<_>>();
+        let mut simulation = Self {
+            walls,
+            origin: setup.domain.as_ref().map_or([0.0; D], |domain| domain.min),
+            grid: Grid::new(scheme.kernel_nodes(), scheme.planes()),
+            scheme,
+            isa: IsaToken(level),
+            groups,
+            sorter: Sorter::default(),
+            drift: 0.0,
+            pointer: None,
+            escaped: Escaped::default(),
+            control: StepControl::new(setup.time_step, setup.dx),
+            next_id: 0,
+            clock: None,
+            times: PhaseTimes::default(),
+            setup,
+        };
+        for batch in batches {
+            simulation.append(batch)?;
+        }
+        simulation.sort();
+        simulation.measure();
+        Ok(simulation)
+    }
+
+    /// Adds particles to a simulation that may be under way; ids go on from the last.
+    ///
+    /// # Errors
+    /// Names what of the batch cannot be simulated; nothing is added then.
+    pub fn add(&mut self, batch: &ParticleBatch<D>) -> Result<(), SetupError> {
+        self.append(batch)?;
+        self.sort();
+        self.measure();
+        Ok(())
+    }
+
+    /// Puts rows behind those of their group, in runs of their own.
+    fn append(&mut self, batch: &ParticleBatch<D>) -> Result<(), SetupError> {
+        let count = batch.position.len();
+        check_batch(batch, &self.setup, self.next_id)?;
+        let offset = self.scheme.offset();
+        let mut located = Vec::with_capacity(count);
+        for (i, position) in batch.position.iter().enumerate() {
+            let place: [(i32, f64); D] = core::array::from_fn(|axis| {
+                locate(
+                    (position[axis] - self.origin[axis]) / self.setup.dx,
+                    offset,
+                    D,
+                )
+            });
+            if !in_range(place.map(|(block, _)| block)) {
+                return setup_error(
+                    "position",
+                    format!("particle {i} at {position:?} m is too far from the origin"),
+                );
+            }
+            located.push(place);
+        }
+        let density = self.setup.materials[batch.material].density;
+        let pick = |values: &[f64], i: usize| {
+            if values.len() == 1 {
+                values[0]
+            } else {
+                values[i]
+            }
+        };
+        let group = &mut self.groups[batch.material];
+        let before = group.len();
+        for (i, place) in located.iter().enumerate() {
+            let block = place.map(|(block, _)| block);
+            let row = (before + i) as u32;
+            match group.runs.last_mut() {
+                Some(run) if run.start >= before as u32 && run.block == block => run.end = row + 1,
+                _ => group.runs.push(Run {
+                    block,
+                    start: row,
+                    end: row + 1,
+                    tile: 0,
+                    first: false,
+                }),
+            }
+            let velocity = match batch.velocity.len() {
+                0 => [0.0; D],
+                1 => batch.velocity[0],
+                _ => batch.velocity[i],
+            };
+            let gradient = match &batch.deformation {
+                Deformation::Rest => None,
+                Deformation::Jacobian(j) => {
+                    let stretch = j[i].powf(1.0 / D as f64);
+                    Some(core::array::from_fn(|a| {
+                        core::array::from_fn(|b| if a == b { stretch } else { 0.0 })
+                    }))
+                }
+                Deformation::Gradient(f) => Some(f[i]),
+            };
+            let (head, strain) = group.columns.split_at_mut(Layout::strain(D));
+            for axis in 0..D {
+                head[axis].push(T::from_f64(place[axis].1));
+                head[Layout::velocity(D) + axis].push(T::from_f64(velocity[axis]));
+                for row in 0..D {
+                    let c = batch.affine.get(i).map_or(0.0, |c| c[row][axis]);
+                    head[Layout::affine(D) + axis * D + row].push(T::from_f64(c));
+                }
+            }
+            match gradient {
+                None => strain
+                    .iter_mut()
+                    .for_each(|column| column.push(T::default())),
+                Some(f) => {
+                    let start = group.law.start(f);
+                    strain
+                        .iter_mut()
+                        .zip(start)
+                        .for_each(|(column, value)| column.push(T::from_f64(value)));
+                }
             }
         }
-        Ok(s)
+        let volume: Vec<T> = (0..count)
+            .map(|i| T::from_f64(pick(&batch.volume, i)))
+            .collect();
+        let mass: Vec<T> = (0..count)
+            .map(|i| {
+                T::from_f64(if batch.mass.is_empty() {
+                    density * pick(&batch.volume, i)
+                } else {
+                    pick(&batch.mass, i)
+                })
+            })
+            .collect();
+        group.volume0.extend(before, &volume);
+        group.mass.extend(before, &mass);
+        group.body.extend(before, &vec![batch.body; count]);
+        group.id.extend((0..count as u32).map(|i| self.next_id + i));
+        self.next_id += count as u32;
+        Ok(())
+    }
+
+    /// Particles to their blocks, and a grid where they are.
+    fn sort(&mut self) {
+        let start = self.now();
+        for group in &mut self.groups {
+            let escaped = self.sorter.sort(group, &self.walls, self.scheme.offset());
+            self.escaped.count += escaped.count;
+            self.escaped.mass += escaped.mass;
+        }
+        self.grid.rebuild(&mut self.groups, &self.walls);
+        self.drift = 0.0;
+        self.times.sort += self.now() - start;
+        self.times.sorts += 1;
+    }
+
+    /// Sorts if a particle may be outside its block's tile.
+    pub(crate) fn sort_if_drifted(&mut self) {
+        if self.drift > DRIFT_LIMIT {
+            self.sort();
+        }
+    }
+
+    /// Speeds of what is there, for the first time step.
+    fn measure(&mut self) {
+        let mut speed_squared = 0.0_f64;
+        let mut wave_speed_squared = 0.0_f64;
+        for group in &self.groups {
+            for row in 0..group.len() {
+                let v = Vector::<f64, D>::from_fn(|axis| {
+                    group.columns[Layout::velocity(D) + axis][row].to_f64()
+                });
+                speed_squared = speed_squared.max(v.dot(v));
+            }
+            let modulus = group
+                .law
+                .wave_modulus(&group.columns[Layout::strain(D)..], group.len());
+            wave_speed_squared = wave_speed_squared.max(modulus / group.density);
+        }
+        self.control.viscosity = self
+            .groups
+            .iter()
+            .filter(|group| group.len() > 0)
+            .map(|group| group.law.viscosity() / group.density)
+            .fold(0.0, f64::max);
+        self.control.speed = speed_squared.sqrt();
+        self.control.wave_speed = wave_speed_squared.sqrt();
+        self.control.gravity = Vector(self.setup.gravity).norm();
+    }
+
+    /// One substep of length `dt` \[s\].
+    fn substep_of(&mut self, dt: f64, limit: DtLimit) -> Result<(), Failure> {
+        self.sort_if_drifted();
+        self.scatter(dt); // (1)–(4)
+        self.update(dt);
+        self.gather(dt, limit)?; // (5)–(8)
+        self.control.taken(dt, limit);
+        Ok(())
+    }
+
+    /// P2G.
+    fn scatter(&mut self, dt: f64) {
+        let start = self.now();
+        let what = crate::transfer::scatter::What::Momentum;
+        for group in &self.groups {
+            crate::transfer::scatter::scatter(
+                group,
+                self.scheme,
+                self.isa,
+                dt,
+                what,
+                self.grid.tiles_mut(),
+            );
+        }
+        self.times.scatter += self.now() - start;
+    }
+
+    /// Momentum to velocity, forces, walls.
+    fn update(&mut self, dt: f64) {
+        let start = self.now();
+        let forces = NodeForces {
+            dt: T::from_f64(dt),
+            gravity_impulse: Vector(self.setup.gravity.map(|g| T::from_f64(g * dt))),
+            pointer: self.pointer.map(|pointer| NodePointer {
+                centre: core::array::from_fn(|axis| {
+                    (pointer.position[axis] - self.origin[axis]) / self.setup.dx
+                }),
+                radius: pointer.radius / self.setup.dx,
+                action: pointer.action,
+            }),
+        };
+        self.grid.update(self.isa, &forces, &self.walls);
+        self.times.grid += self.now() - start;
+    }
+
+    /// G2P.
+    fn gather(&mut self, dt: f64, limit: DtLimit) -> Result<(), Failure> {
+        let start = self.now();
+        let (mut speed_squared, mut moved, mut wave_speed_squared) = (0.0_f64, 0.0_f64, 0.0_f64);
+        let mut failure = None;
+        for (material, group) in self.groups.iter_mut().enumerate() {
+            let found = crate::transfer::gather::gather(
+                group,
+                &self.grid,
+                &self.walls,
+                self.scheme,
+                self.isa,
+                dt,
+            );
+            speed_squared = speed_squared.max(found.speed_squared);
+            moved = moved.max(found.moved);
+            wave_speed_squared = wave_speed_squared.max(found.wave_modulus / group.density);
+            if let Some(row) = found.failed {
+                failure = failure.or(Some((material, row, found.failures)));
+            }
+        }
+        self.times.gather += self.now() - start;
+        if let Some((material, row, count)) = failure {
+            return Err(self.failure(material, row, count, dt, limit));
+        }
+        self.drift += moved;
+        self.control.speed = speed_squared.sqrt();
+        self.control.wave_speed = wave_speed_squared.sqrt();
+        Ok(())
+    }
+
+    fn failure(
+        &self,
+        material: usize,
+        row: usize,
+        count: u64,
+        dt: f64,
+        dt_limit: DtLimit,
+    ) -> Failure {
+        let group = &self.groups[material];
+        let run = group
+            .runs
+            .iter()
+            .find(|run| run.rows().contains(&row))
+            .expect("every row is in a run");
+        let cells = group.cells(run.block, row, self.scheme.offset());
+        Failure {
+            what: "a particle's motion or strain is no longer a finite number".into(),
+            particle: group.id[row],
+            material: self.setup.materials[material].name.clone(),
+            body: group.body.get(row),
+            position: three(core::array::from_fn::<_, D, _>(|axis| {
+                self.origin[axis] + cells[axis] * self.setup.dx
+            })),
+            count,
+            substep: self.control.substeps + 1,
+            time: self.control.time(),
+            dt,
+            dt_limit,
+        }
+    }
+
+    fn now(&self) -> f64 {
+        self.clock.map_or(0.0, |clock| clock())
     }
 }
 
-fn three<const D: usize>(a: [f64; D]) -> [f64; 3] {
-    core::array::from_fn(|i| if i < D { a[i] } else { 0.0 })
+/// Checks everything but the particles.
+fn check<const D: usize>(setup: &Setup<D>, laws: usize) -> Result<Walls<D>, SetupError> {
+    let dx = setup.dx;
+    if !(dx > 0.0 && dx.is_finite()) {
+        return setup_error("dx", format!("must be a positive number, not {dx}"));
+    }
+    if setup.materials.is_empty() || laws != setup.materials.len() {
+        return setup_error(
+            "materials",
+            "there must be at least one, each with its law".into(),
+        );
+    }
+    for material in &setup.materials {
+        if !(material.density > 0.0 && material.density.is_finite()) {
+            return setup_error(
+                &format!("materials.{}.density", material.name),
+                format!("must be a positive number, not {}", material.density),
+            );
+        }
+    }
+    if setup.gravity.iter().any(|g| !g.is_finite()) {
+        return setup_error("gravity", "must be finite".into());
+    }
+    if setup.kernel == Kernel::Linear && setup.force != ForceForm::Classic {
+        return setup_error(
+            "kernel",
+            "\"linear\" needs force = \"classic\": its inertia D is singular where a particle meets a node".into(),
+        );
+    }
+    if let Transfer::Flip { blend } = setup.transfer
+        && !(0.0..=1.0).contains(&blend)
+    {
+        return setup_error(
+            "flip_blend",
+            format!("must be from 0 (PIC) to 1 (FLIP), not {blend}"),
+        );
+    }
+    match setup.time_step {
+        TimeStep::Fixed(dt) if !(dt > 0.0 && dt.is_finite()) => {
+            return setup_error("dt", format!("must be a positive number, not {dt}"));
+        }
+        TimeStep::Automatic { cfl, .. } if !(cfl > 0.0 && cfl <= 1.0) => {
+            return setup_error("cfl", format!("must be above 0 and at most 1, not {cfl}"));
+        }
+        TimeStep::Automatic { longest, .. } if longest.is_nan() || longest <= 0.0 => {
+            return setup_error("dt_max", format!("must be positive, not {longest}"));
+        }
+        _ => {}
+    }
+    let walls = setup
+        .domain
+        .as_ref()
+        .map_or_else(|| Ok(Walls::unbounded()), |domain| Walls::new(domain, dx))?;
+    let shortest = crate::grid::tile_edge::<D>(4) as i64;
+    for axis in 0..D {
+        if walls.period[axis].is_some_and(|period| period < shortest) {
+            return setup_error(
+                "dx",
+                format!(
+                    "a periodic axis needs at least {shortest} cells; {} has fewer",
+                    ["x", "y", "z"][axis]
+                ),
+            );
+        }
+    }
+    Ok(walls)
+}
+
+/// Checks a batch; `next_id` ids are taken.
+fn check_batch<const D: usize>(
+    batch: &ParticleBatch<D>,
+    setup: &Setup<D>,
+    next_id: u32,
+) -> Result<(), SetupError> {
+    let count = batch.position.len();
+    if batch.material >= setup.materials.len() {
+        return setup_error(
+            "material",
+            format!("there is no material {}", batch.material),
+        );
+    }
+    if u32::try_from(count)
+        .ok()
+        .and_then(|count| next_id.checked_add(count))
+        .is_none_or(|last| last == u32::MAX)
+    {
+        return setup_error(
+            "position",
+            format!("{count} more particles are more than ids can number"),
+        );
+    }
+    let lengths = [
+        ("velocity", batch.velocity.len(), true, true),
+        ("volume", batch.volume.len(), false, true),
+        ("mass", batch.mass.len(), true, true),
+        ("affine", batch.affine.len(), true, false),
+    ];
+    for (key, len, may_be_empty, may_be_one) in lengths {
+        if len != count && !(len == 0 && may_be_empty) && !(len == 1 && may_be_one) && count > 0 {
+            return setup_error(key, format!("{len} values for {count} particles"));
+        }
+    }
+    let deformed = match &batch.deformation {
+        Deformation::Rest => count,
+        Deformation::Jacobian(j) => j.len(),
+        Deformation::Gradient(f) => f.len(),
+    };
+    if deformed != count {
+        return setup_error(
+            "deformation",
+            format!("{deformed} values for {count} particles"),
+        );
+    }
+    for (key, values) in [("volume", &batch.volume), ("mass", &batch.mass)] {
+        if let Some(i) = values.iter().position(|&x| !(x > 0.0 && x.is_finite())) {
+            return setup_error(
+                key,
+                format!(
+                    "of particle {i} must be a positive number, not {}",
+                    values[i]
+                ),
+            );
+        }
+    }
+    let finite = |values: &[f64]| values.iter().all(|x| x.is_finite());
+    for i in 0..count {
+        let ok = finite(&batch.position[i])
+            && batch.velocity.get(i).is_none_or(|v| finite(v))
+            && batch
+                .affine
+                .get(i)
+                .is_none_or(|c| c.iter().all(|row| finite(row)))
+            && match &batch.deformation {
+                Deformation::Rest => true,
+                Deformation::Jacobian(j) => j[i] > 0.0 && j[i].is_finite(),
+                Deformation::Gradient(f) => f[i].iter().all(|row| finite(row)),
+            };
+        if !ok {
+            return setup_error(
+                "position",
+                format!(
+                    "particle {i}: position, velocity, affine and deformation must be finite numbers, and J positive"
+                ),
+            );
+        }
+    }
+    Ok(())
 }
 
 impl<T: Lanes, const D: usize> Simulate for Simulation<T, D> {
@@ -205,7 +677,7 @@ impl<T: Lanes, const D: usize> Simulate for Simulation<T, D> {
         self.setup
             .domain
             .as_ref()
-            .map(|d| (three(d.min), three(d.max)))
+            .map(|domain| (three(domain.min), three(domain.max)))
     }
     fn gravity(&self) -> [f64; 3] {
         three(self.setup.gravity)
@@ -214,116 +686,87 @@ impl<T: Lanes, const D: usize> Simulate for Simulation<T, D> {
         self.setup
             .materials
             .iter()
-            .map(|m| m.name.clone())
+            .map(|material| material.name.clone())
             .collect()
     }
     fn time(&self) -> f64 {
-        self.time
+        self.control.time()
     }
     fn substeps(&self) -> u64 {
-        self.substeps
+        self.control.substeps
     }
     fn particle_count(&self) -> usize {
-        self.x.len()
+        self.groups.iter().map(Group::len).sum()
     }
     fn next_dt(&self) -> (f64, DtLimit) {
-        match self.setup.time_step {
-            TimeStep::Fixed(dt) => (dt, DtLimit::Fixed),
-            TimeStep::Automatic { .. } => (1e-3, DtLimit::Sound),
-        }
+        self.control.next()
     }
+
     fn substep(&mut self) -> Result<Advance, Failure> {
-        let (dt, limit) = self.next_dt();
-        for i in 0..self.x.len() {
-            for d in 0..D {
-                self.v[i][d] += dt * self.setup.gravity[d];
-                self.x[i][d] += dt * self.v[i][d];
-                if let Some(domain) = &self.setup.domain {
-                    if self.x[i][d] < domain.min[d] {
-                        self.x[i][d] = domain.min[d];
-                        self.v[i][d] *= -0.5;
-                    }
-                    if self.x[i][d] > domain.max[d] {
-                        self.x[i][d] = domain.max[d];
-                        self.v[i][d] *= -0.5;
-                    }
-                }
-            }
-        }
-        self.time += dt;
-        self.substeps += 1;
+        let (dt, limit) = self.control.next();
+        // Dust at rest without gravity has no time scale at all.
+        let dt = if dt.is_finite() { dt } else { 1.0 };
+        self.substep_of(dt, limit)?;
         Ok(Advance {
             substeps: 1,
             dt_min: dt,
             limit,
         })
     }
+
     fn advance_to(&mut self, time: f64) -> Result<Advance, Failure> {
-        let mut a = Advance {
+        let mut advance = Advance {
+            substeps: 0,
             dt_min: f64::INFINITY,
-            ..Advance::default()
+            limit: DtLimit::Frame,
         };
-        while self.time < time - 1e-9 {
-            let one = self.substep()?;
-            a = Advance {
-                substeps: a.substeps + 1,
-                ..one
-            };
+        while let Some((dt, limit)) = self.control.towards(time) {
+            self.substep_of(dt, limit)?;
+            advance.substeps += 1;
+            if dt < advance.dt_min {
+                (advance.dt_min, advance.limit) = (dt, limit);
+            }
         }
-        Ok(a)
+        self.control.arrived(time);
+        Ok(advance)
     }
+
     fn command(&mut self, command: Command) {
-        if let Command::Gravity(g) = command {
-            self.setup.gravity = core::array::from_fn(|i| g[i]);
+        match command {
+            Command::Gravity(gravity) => {
+                self.setup.gravity = core::array::from_fn(|axis| gravity[axis]);
+                self.control.gravity = Vector(self.setup.gravity).norm();
+            }
+            Command::Pointer(pointer) => self.pointer = pointer,
         }
     }
+
     fn snapshot(&self, fields: &[Field]) -> Snapshot {
-        let n = self.x.len();
-        let columns = fields
-            .iter()
-            .map(|&f| {
-                (
-                    f,
-                    match f {
-                        Field::Position => Data::F64(self.x.iter().flatten().copied().collect()),
-                        Field::Velocity => {
-                            Data::F32(self.v.iter().flatten().map(|&v| v as f32).collect())
-                        }
-                        Field::Affine | Field::DeformationGradient => {
-                            Data::F32(vec![0.0; n * D * D])
-                        }
-                        Field::Jacobian | Field::PlasticJacobian => Data::F32(vec![1.0; n]),
-                        Field::Pressure => Data::F32(vec![0.0; n]),
-                        Field::Mass => Data::F64(self.m.clone()),
-                        Field::Volume0 => Data::F64(self.vol.clone()),
-                        Field::Material => Data::U32(self.mat.clone()),
-                        Field::Body => Data::U32(self.body.clone()),
-                        Field::Id => Data::U32((0..n as u32).collect()),
-                    },
-                )
-            })
-            .collect();
-        Snapshot {
-            time: self.time,
-            dimension: D,
-            count: n,
-            columns,
-        }
+        crate::snapshot::snapshot(self, fields)
     }
-    fn diagnostics(&self) -> Diagnostics {
-        Diagnostics {
-            time: self.time,
-            substeps: self.substeps,
-            particles: self.x.len() as u64,
-            mass: self.m.iter().sum(),
-            ..Diagnostics::default()
-        }
+
+    fn diagnostics(&mut self) -> Diagnostics {
+        self.sort_if_drifted();
+        crate::diagnostics::measure(self)
     }
-    fn set_clock(&mut self, _: fn() -> f64) {}
+
+    fn set_clock(&mut self, clock: fn() -> f64) {
+        self.clock = Some(clock);
+        self.times = PhaseTimes::default();
+    }
+
     fn phase_times(&self) -> PhaseTimes {
-        PhaseTimes::default()
+        self.times
     }
+
     fn memory(&self) -> Memory {
-        Memory::default()
+        let blocks = self.grid.block_count();
+        Memory {
+            blocks,
+            nodes: blocks * block_edge(D).pow(D as u32),
+            grid_bytes: self.grid.bytes(),
+            particle_bytes: self.groups.iter().map(Group::bytes).sum::<usize>()
+                + self.sorter.bytes(),
+        }
     }
 }

@@ -1,5 +1,9 @@
 //! What stops the material: contact laws × shapes, as plain data.
 
+mod contact;
+mod pointer;
+pub(crate) mod walls;
+
 /// The box that holds a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Domain<const D: usize> {

@@ -5,6 +5,7 @@
 
 mod corotated;
 mod fluid;
+mod law;
 mod neo_hookean;
 mod none;
 mod snow;
@@ -12,6 +13,8 @@ mod strain;
 
 pub use corotated::Corotated;
 pub use fluid::{Eos, Fluid, JacobianUpdate};
+pub(crate) use law::{CHUNK, built_in, load_part, store_part};
+pub use law::{IsaToken, Law, ParticleState, law};
 pub use neo_hookean::NeoHookean;
 pub use none::Dust;
 pub use snow::{HardeningFrom, Snow};

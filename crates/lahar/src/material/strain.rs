@@ -21,6 +21,11 @@ pub trait Strain<R: Real, const D: usize>: Copy {
     fn displacement_gradient(&self) -> Matrix<R, D>;
     /// J − 1.
     fn jacobian_minus_one(&self) -> R;
+    /// J_P − 1, zero for models without plastic flow.
+    #[inline(always)]
+    fn plastic_jacobian_minus_one(&self) -> R {
+        self.jacobian_minus_one().zero()
+    }
 }
 
 /// The relative change of volume: J − 1.
@@ -164,5 +169,9 @@ impl<R: Real, const D: usize> Strain<R, D> for PlasticGradient<R, D> {
     #[inline(always)]
     fn jacobian_minus_one(&self) -> R {
         self.h.determinant_of_identity_plus_minus_one()
+    }
+    #[inline(always)]
+    fn plastic_jacobian_minus_one(&self) -> R {
+        self.plastic_jacobian_minus_one
     }
 }

@@ -3,8 +3,9 @@
 //! with it the result, does not depend on the machine.
 
 use super::real::{Mask, Real, Scalar};
+use core::ops::{Add, Mul};
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x16, f64x8, mask32x16, mask64x8};
+use fearless_simd::{f32x4, f32x16, f64x2, f64x4, f64x8, mask32x16, mask64x8};
 
 /// Scalars that know their lane type on an instruction set.
 pub trait Lanes: Scalar {
@@ -18,10 +19,35 @@ pub trait Lanes: Scalar {
     fn store<S: Simd>(value: Self::Of<S>, slice: &mut [Self]);
     /// One number in every lane.
     fn broadcast<S: Simd>(simd: S, value: Self) -> Self::Of<S>;
+    /// Writes `WIDTH` quads: `[a, b, c, d]` of lane 0, then of lane 1, ...
+    fn store_quads<S: Simd>(quads: [Self::Of<S>; 4], slice: &mut [Self]);
+    /// Reads what [`Lanes::store_quads`] writes.
+    fn load_quads<S: Simd>(simd: S, slice: &[Self]) -> [Self::Of<S>; 4];
+
+    /// Four quads side by side: a stencil row of four nodes.
+    type Row<S: Simd>: Row<S, Self>;
+}
+
+/// Four nodes of four numbers each, as they lie in a tile.
+pub trait Row<S: Simd, T>: Copy + Add<Output = Self> + Mul<Output = Self> {
+    /// From the first sixteen numbers of `slice`.
+    fn load(simd: S, slice: &[T]) -> Self;
+    /// To the first sixteen numbers of `slice`.
+    fn store(self, slice: &mut [T]);
+    /// One number everywhere.
+    fn splat(simd: S, value: T) -> Self;
+    /// The quad at the start of `slice`, for each of the four nodes.
+    fn repeat(simd: S, slice: &[T]) -> Self;
+    /// Number k at the start of `slice` in all of node k.
+    fn spread(simd: S, slice: &[T]) -> Self;
+    /// `self * a + b`; fused but on the portable instruction set.
+    fn mul_add(self, a: Self, b: Self) -> Self;
+    /// The sum over the four nodes, to the first four numbers of `slice`.
+    fn fold(self, slice: &mut [T]);
 }
 
 macro_rules! lanes {
-    ($scalar:ident, $vector:ident, $mask:ident, $width:literal) => {
+    ($scalar:ident, $vector:ident, $mask:ident, $width:literal, $part:ident, $parts:path, $row:ident) => {
         impl<S: Simd> Mask for $mask<S> {
             #[inline(always)]
             fn any(self) -> bool {
@@ -114,9 +140,142 @@ macro_rules! lanes {
             fn broadcast<S: Simd>(simd: S, value: Self) -> Self::Of<S> {
                 SimdBase::splat(simd, value)
             }
+            #[inline(always)]
+            fn store_quads<S: Simd>(quads: [Self::Of<S>; 4], slice: &mut [Self]) {
+                let parts = quads.map($parts);
+                for (k, out) in slice[..4 * $width].chunks_exact_mut($width).enumerate() {
+                    SimdInterleaved::store_four_interleaved(
+                        [parts[0][k], parts[1][k], parts[2][k], parts[3][k]],
+                        out,
+                    );
+                }
+            }
+            #[inline(always)]
+            fn load_quads<S: Simd>(simd: S, slice: &[Self]) -> [Self::Of<S>; 4] {
+                let parts: [[$part<S>; 4]; 4] = core::array::from_fn(|k| {
+                    $part::load_four_interleaved(simd, &slice[k * $width..(k + 1) * $width])
+                });
+                core::array::from_fn(|c| {
+                    parts[0][c]
+                        .combine(parts[1][c])
+                        .combine(parts[2][c].combine(parts[3][c]))
+                })
+            }
+            type Row<S: Simd> = $row<S>;
         }
     };
 }
 
-lanes!(f32, f32x16, mask32x16, 16);
-lanes!(f64, f64x8, mask64x8, 8);
+#[inline(always)]
+fn parts_f32<S: Simd>(v: f32x16<S>) -> [f32x4<S>; 4] {
+    let (low, high) = v.split();
+    let ((a, b), (c, d)) = (low.split(), high.split());
+    [a, b, c, d]
+}
+
+#[inline(always)]
+fn parts_f64<S: Simd>(v: f64x8<S>) -> [f64x2<S>; 4] {
+    let (low, high) = v.split();
+    let ((a, b), (c, d)) = (low.split(), high.split());
+    [a, b, c, d]
+}
+
+lanes!(f32, f32x16, mask32x16, 16, f32x4, parts_f32, f32x16);
+lanes!(f64, f64x8, mask64x8, 8, f64x2, parts_f64, F64Row);
+
+impl<S: Simd> Row<S, f32> for f32x16<S> {
+    #[inline(always)]
+    fn load(simd: S, slice: &[f32]) -> Self {
+        f32x16::from_slice(simd, &slice[..16])
+    }
+    #[inline(always)]
+    fn store(self, slice: &mut [f32]) {
+        self.store_slice(&mut slice[..16]);
+    }
+    #[inline(always)]
+    fn splat(simd: S, value: f32) -> Self {
+        SimdBase::splat(simd, value)
+    }
+    #[inline(always)]
+    fn repeat(simd: S, slice: &[f32]) -> Self {
+        f32x16::block_splat(f32x4::from_slice(simd, &slice[..4]))
+    }
+    #[inline(always)]
+    fn spread(simd: S, slice: &[f32]) -> Self {
+        let [a, b, c, d]: [f32x4<S>; 4] = core::array::from_fn(|k| SimdBase::splat(simd, slice[k]));
+        a.combine(b).combine(c.combine(d))
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        SimdFloat::mul_add(self, a, b)
+    }
+    #[inline(always)]
+    fn fold(self, slice: &mut [f32]) {
+        let (low, high) = self.split();
+        let (a, b) = (low + high).split();
+        (a + b).store_slice(&mut slice[..4]);
+    }
+}
+
+/// A row in `f64`: nodes 0 and 1, nodes 2 and 3.
+#[derive(Clone, Copy, Debug)]
+pub struct F64Row<S: Simd>(f64x8<S>, f64x8<S>);
+
+impl<S: Simd> Add for F64Row<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0, self.1 + other.1)
+    }
+}
+
+impl<S: Simd> Mul for F64Row<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0 * other.0, self.1 * other.1)
+    }
+}
+
+impl<S: Simd> Row<S, f64> for F64Row<S> {
+    #[inline(always)]
+    fn load(simd: S, slice: &[f64]) -> Self {
+        Self(
+            f64x8::from_slice(simd, &slice[..8]),
+            f64x8::from_slice(simd, &slice[8..16]),
+        )
+    }
+    #[inline(always)]
+    fn store(self, slice: &mut [f64]) {
+        self.0.store_slice(&mut slice[..8]);
+        self.1.store_slice(&mut slice[8..16]);
+    }
+    #[inline(always)]
+    fn splat(simd: S, value: f64) -> Self {
+        let half = SimdBase::splat(simd, value);
+        Self(half, half)
+    }
+    #[inline(always)]
+    fn repeat(simd: S, slice: &[f64]) -> Self {
+        let quad = f64x4::from_slice(simd, &slice[..4]);
+        let half = quad.combine(quad);
+        Self(half, half)
+    }
+    #[inline(always)]
+    fn spread(simd: S, slice: &[f64]) -> Self {
+        let [a, b, c, d]: [f64x4<S>; 4] = core::array::from_fn(|k| SimdBase::splat(simd, slice[k]));
+        Self(a.combine(b), c.combine(d))
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Self(
+            SimdFloat::mul_add(self.0, a.0, b.0),
+            SimdFloat::mul_add(self.1, a.1, b.1),
+        )
+    }
+    #[inline(always)]
+    fn fold(self, slice: &mut [f64]) {
+        let (a, b) = (self.0 + self.1).split();
+        (a + b).store_slice(&mut slice[..4]);
+    }
+}

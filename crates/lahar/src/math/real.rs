@@ -157,6 +157,10 @@ pub trait Scalar:
     fn from_f64(value: f64) -> Self;
     /// Exact.
     fn to_f64(self) -> f64;
+    /// Towards zero.
+    fn to_index(self) -> usize;
+    /// As a column of a snapshot.
+    fn data(values: Vec<Self>) -> crate::particles::Data;
     /// e to the power self, the same bits on every machine.
     fn exp_scalar(self) -> Self;
     /// Natural logarithm, the same bits on every machine.
@@ -166,7 +170,7 @@ pub trait Scalar:
 }
 
 macro_rules! scalar {
-    ($t:ident, $exp:path, $ln:path, $pow:path) => {
+    ($t:ident, $variant:ident, $exp:path, $ln:path, $pow:path) => {
         impl Real for $t {
             type Scalar = $t;
             type Mask = bool;
@@ -241,6 +245,13 @@ macro_rules! scalar {
             fn to_f64(self) -> f64 {
                 f64::from(self)
             }
+            fn data(values: Vec<Self>) -> crate::particles::Data {
+                crate::particles::Data::$variant(values)
+            }
+            #[inline(always)]
+            fn to_index(self) -> usize {
+                self as usize
+            }
             #[inline]
             fn exp_scalar(self) -> Self {
                 $exp(self)
@@ -257,5 +268,5 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f32, libm::expf, libm::logf, libm::powf);
-scalar!(f64, libm::exp, libm::log, libm::pow);
+scalar!(f32, F32, libm::expf, libm::logf, libm::powf);
+scalar!(f64, F64, libm::exp, libm::log, libm::pow);

@@ -1,0 +1,482 @@
+//! Pictures of snapshots, drawn by the processor: for runs without a display, and for films.
+//!
+//! ```text
+//! Snapshot ─► plane (2D: one filled shape) ─┐
+//!          └► space (3D: lit spheres) ──────┴─► Picture ─► PNG
+//!                                                      └─► Film ─► GIF
+//! ```
+//! Everything a film must not change between frames (view, colours, ranges) is decided once, by [`Renderer::new`].
+
+mod camera;
+mod film;
+mod palette;
+mod plane;
+mod space;
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use lahar::{Field, Simulate, Snapshot};
+
+pub use camera::Camera;
+pub use film::Film;
+pub use palette::{BACKGROUND, Colour, colour_map, model_colours};
+
+/// The fields that a picture is drawn from; those that a snapshot lacks are done without.
+pub const FIELDS: &[Field] = &[
+    Field::Position,
+    Field::Velocity,
+    Field::Pressure,
+    Field::Volume0,
+    Field::Material,
+    Field::Body,
+];
+
+/// Pixels, sRGB, rows from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels a row.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Red, green and blue, pixel after pixel.
+    pub rgb: Vec<u8>,
+}
+
+impl Picture {
+    /// Writes it as PNG.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn write_png(&self, writer: impl Write) -> io::Result<()> {
+        let mut encoder = png::Encoder::new(writer, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Balanced);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&self.rgb)?;
+        Ok(writer.finish()?)
+    }
+
+    /// Writes it as a PNG file at `path`.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn save_png(&self, path: impl AsRef<Path>) -> io::Result<()> {
+        let mut writer = BufWriter::new(File::create(path)?);
+        self.write_png(&mut writer)?;
+        writer.flush()
+    }
+}
+
+/// What of a scene a renderer has to know.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenery {
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Corners of what is shown \[m\]: the domain, or the particles and some room around them.
+    pub bounds: ([f64; 3], [f64; 3]),
+    /// Whether the bounds are a domain with walls to be drawn.
+    pub walls: bool,
+    /// The axis that points up (0, 1, 2): against gravity.
+    pub up: usize,
+    /// Distance between nodes \[m\].
+    pub dx: f64,
+    /// A speed that the scene is expected to reach \[m/s\]; 0 if nothing is known.
+    pub speed: f64,
+    /// Colours of the materials, by index; those beyond the end take them again from the start.
+    pub colours: Vec<Colour>,
+}
+
+impl Scenery {
+    /// What can be seen from the simulation at its start; `models` are the names of the materials' models, by
+    /// index ("fluid", "snow", ...), which choose the colours.
+    pub fn of(simulation: &dyn Simulate, models: &[&str]) -> Self {
+        let dimension = simulation.dimension();
+        let gravity = simulation.gravity();
+        let pull = gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let up = (0..dimension)
+            .max_by(|&a, &b| gravity[a].abs().total_cmp(&gravity[b].abs()))
+            .filter(|_| pull > 0.0)
+            .unwrap_or(1);
+        let bounds = simulation
+            .domain()
+            .unwrap_or_else(|| around(&simulation.snapshot(&[Field::Position]), simulation.dx()));
+        Self {
+            dimension,
+            walls: simulation.domain().is_some(),
+            bounds,
+            up,
+            dx: simulation.dx(),
+            // What falls half the height of the scene.
+            speed: (pull * (bounds.1[up] - bounds.0[up]).max(0.0)).sqrt(),
+            colours: model_colours(models),
+        }
+    }
+}
+
+/// The box of the particles, half as large again.
+fn around(snapshot: &Snapshot, dx: f64) -> ([f64; 3], [f64; 3]) {
+    let d = snapshot.dimension;
+    let (mut min, mut max) = ([0.0; 3], [0.0; 3]);
+    let positions = snapshot
+        .get(Field::Position)
+        .map(lahar::Data::to_f64)
+        .unwrap_or_default();
+    for axis in 0..d {
+        let along = || positions.iter().skip(axis).step_by(d).copied();
+        let low = along().fold(f64::INFINITY, f64::min);
+        let high = along().fold(f64::NEG_INFINITY, f64::max);
+        (min[axis], max[axis]) = if low <= high { (low, high) } else { (0.0, 1.0) };
+    }
+    let extent = (0..d)
+        .map(|axis| max[axis] - min[axis])
+        .fold(4.0 * dx, f64::max);
+    for axis in 0..d {
+        min[axis] -= 0.25 * extent;
+        max[axis] += 0.25 * extent;
+    }
+    (min, max)
+}
+
+/// What colours mean.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Colouring {
+    /// The material; brighter where it is fast.
+    #[default]
+    Material,
+    /// The body.
+    Body,
+    /// Speed \[m/s\] from 0 to the given one, on a perceptually even scale.
+    Speed(f64),
+    /// Pressure \[Pa\] from the first to the second, on a perceptually even scale.
+    Pressure(f64, f64),
+}
+
+/// How pictures look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Style {
+    /// Pixels a row at most; less for scenes that are higher than wide.
+    pub width: u32,
+    /// Rows at most.
+    pub height: u32,
+    /// Samples a pixel and axis.
+    pub samples: u32,
+    /// What colours mean.
+    pub colouring: Colouring,
+}
+
+impl Default for Style {
+    fn default() -> Self {
+        Self {
+            width: 640,
+            height: 480,
+            samples: 3,
+            colouring: Colouring::Material,
+        }
+    }
+}
+
+/// Draws the snapshots of one scene, all by the same view and colours.
+#[derive(Clone, Debug)]
+pub struct Renderer {
+    scenery: Scenery,
+    style: Style,
+    view: View,
+}
+
+#[derive(Clone, Debug)]
+enum View {
+    Plane(plane::Plane),
+    Space(Box<space::Space>),
+}
+
+impl Renderer {
+    /// Chooses the view for `scenery`.
+    pub fn new(scenery: Scenery, style: Style) -> Self {
+        let style = Style {
+            width: style.width.max(16),
+            height: style.height.max(16),
+            samples: style.samples.clamp(1, 8),
+            ..style
+        };
+        let view = if scenery.dimension == 2 {
+            View::Plane(plane::Plane::new(&scenery, &style))
+        } else {
+            View::Space(Box::new(space::Space::new(&scenery, &style)))
+        };
+        Self {
+            scenery,
+            style,
+            view,
+        }
+    }
+
+    /// Looks from `camera` instead; nothing in 2D.
+    #[must_use]
+    pub fn with_camera(mut self, camera: Camera) -> Self {
+        if let View::Space(space) = &mut self.view {
+            space.camera = camera;
+        }
+        self
+    }
+
+    /// Draws one moment.
+    pub fn render(&self, snapshot: &Snapshot) -> Picture {
+        let particles = Drawn::from(snapshot, &self.scenery, self.style.colouring);
+        match &self.view {
+            View::Plane(plane) => plane.render(&particles),
+            View::Space(space) => space.render(&particles),
+        }
+    }
+}
+
+/// Particles as the painters take them.
+struct Drawn {
+    /// Where \[m\]; 0 beyond the dimension.
+    position: Vec<[f32; 3]>,
+    /// Edge of the cube (square) that one fills at rest \[m\].
+    size: Vec<f32>,
+    /// In linear light.
+    colour: Vec<[f32; 3]>,
+}
+
+impl Drawn {
+    fn from(snapshot: &Snapshot, scenery: &Scenery, colouring: Colouring) -> Self {
+        let d = snapshot.dimension;
+        let n = snapshot.count;
+        let numbers = |field: Field| snapshot.get(field).map(lahar::Data::to_f32);
+        let positions = snapshot
+            .get(Field::Position)
+            .map(lahar::Data::to_f64)
+            .unwrap_or_default();
+        let position = positions
+            .chunks_exact(d)
+            .map(|x| core::array::from_fn(|axis| if axis < d { x[axis] as f32 } else { 0.0 }))
+            .collect();
+        let size = numbers(Field::Volume0).map_or_else(
+            || vec![0.5 * scenery.dx as f32; n],
+            |volumes| {
+                volumes
+                    .iter()
+                    .map(|v| if d == 2 { v.sqrt() } else { v.cbrt() })
+                    .collect()
+            },
+        );
+        let speed: Vec<f32> = numbers(Field::Velocity).map_or_else(
+            || vec![0.0; n],
+            |v| {
+                v.chunks_exact(d)
+                    .map(|v| v.iter().map(|c| c * c).sum::<f32>().sqrt())
+                    .collect()
+            },
+        );
+        let index = |field: Field| numbers(field).unwrap_or_else(|| vec![0.0; n]);
+        let colours: Vec<[[f32; 3]; 2]> = scenery
+            .colours
+            .iter()
+            .map(|&colour| {
+                [
+                    palette::linear(colour),
+                    palette::linear(palette::bright(colour)),
+                ]
+            })
+            .collect();
+        let of_index = |i: f32| colours[i as usize % colours.len().max(1)];
+        let colour = if colours.is_empty() {
+            vec![[1.0; 3]; n]
+        } else {
+            match colouring {
+                Colouring::Material => {
+                    let scale = if scenery.speed > 0.0 {
+                        1.0 / scenery.speed as f32
+                    } else {
+                        0.0
+                    };
+                    index(Field::Material)
+                        .iter()
+                        .zip(&speed)
+                        .map(|(&material, &speed)| {
+                            let [base, bright] = of_index(material);
+                            let part = (speed * scale).clamp(0.0, 1.0);
+                            palette::mix(base, bright, part * part)
+                        })
+                        .collect()
+                }
+                Colouring::Body => index(Field::Body)
+                    .iter()
+                    .map(|&body| {
+                        palette::linear(palette::BODIES[body as usize % palette::BODIES.len()])
+                    })
+                    .collect(),
+                Colouring::Speed(largest) => on_scale(&speed, 0.0, largest as f32),
+                Colouring::Pressure(low, high) => {
+                    on_scale(&index(Field::Pressure), low as f32, high as f32)
+                }
+            }
+        };
+        Self {
+            position,
+            size,
+            colour,
+        }
+    }
+}
+
+fn on_scale(values: &[f32], low: f32, high: f32) -> Vec<[f32; 3]> {
+    values
+        .iter()
+        .map(|value| palette::linear(colour_map((value - low) / (high - low))))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lahar::Data;
+
+    fn snapshot(dimension: usize, positions: &[f64], volume: f32, materials: &[u32]) -> Snapshot {
+        Snapshot {
+            time: 0.0,
+            dimension,
+            count: materials.len(),
+            columns: vec![
+                (Field::Position, Data::F64(positions.to_vec())),
+                (Field::Volume0, Data::F32(vec![volume; materials.len()])),
+                (Field::Material, Data::U32(materials.to_vec())),
+            ],
+        }
+    }
+
+    fn scenery(dimension: usize) -> Scenery {
+        Scenery {
+            dimension,
+            bounds: ([0.0; 3], [2.0, 1.0, if dimension == 3 { 1.0 } else { 0.0 }]),
+            walls: true,
+            up: 1,
+            dx: 0.1,
+            speed: 0.0,
+            colours: model_colours(&["fluid", "corotated"]),
+        }
+    }
+
+    fn count(picture: &Picture, wanted: impl Fn([u8; 3]) -> bool) -> usize {
+        picture
+            .rgb
+            .chunks_exact(3)
+            .filter(|p| wanted([p[0], p[1], p[2]]))
+            .count()
+    }
+
+    #[test]
+    fn a_lone_particle_is_a_disc_of_its_colour() {
+        let renderer = Renderer::new(scenery(2), Style::default());
+        let picture = renderer.render(&snapshot(2, &[1.0, 0.5], 0.01, &[1]));
+        let pixels = 640.0 / 2.1;
+        // (1 − r²/h²)² is at the threshold .45 where r = .574 h, h = 1.45 sizes.
+        let radius = 0.574 * 1.45 * 0.1 * pixels;
+        // Half red light or more.
+        let area = count(&picture, |p| p[0] > 0xB0) as f64;
+        let expected = std::f64::consts::PI * f64::powi(radius, 2);
+        assert!(
+            (0.93..1.07).contains(&(area / expected)),
+            "{area} of {expected}"
+        );
+    }
+
+    #[test]
+    fn a_jittered_body_has_no_holes() {
+        let (mut positions, mut state) = (vec![], 7_u64);
+        let mut jitter = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1);
+            (state >> 40) as f64 / f64::from(1 << 24)
+        };
+        for i in 0..40 {
+            for j in 0..40 {
+                positions.extend([
+                    0.5 + 0.02 * (f64::from(i) + jitter()),
+                    0.1 + 0.02 * (f64::from(j) + jitter()),
+                ]);
+            }
+        }
+        let renderer = Renderer::new(scenery(2), Style::default());
+        let picture = renderer.render(&snapshot(2, &positions, 4e-4, &[0; 1600]));
+        let pixels = 640.0 / 2.1;
+        let fluid = scenery(2).colours[0];
+        let filled = count(&picture, |p| p == fluid) as f64;
+        assert!(filled > 0.64 * pixels * pixels * 0.97, "{filled}");
+    }
+
+    #[test]
+    fn walls_clip_and_nothing_is_drawn_for_what_is_not_a_number() {
+        let renderer = Renderer::new(scenery(2), Style::default());
+        let empty = renderer.render(&snapshot(2, &[], 0.01, &[]));
+        let lost = renderer.render(&snapshot(
+            2,
+            &[f64::NAN, 0.5, 9.0, 9.0, 1e300, -1e300],
+            0.01,
+            &[0; 3],
+        ));
+        assert_eq!(empty, lost);
+        assert_eq!(
+            count(&empty, |p| p == BACKGROUND) + count(&empty, |p| p == [0x4A, 0x6B, 0x7E]),
+            empty.rgb.len() / 3
+        );
+    }
+
+    #[test]
+    fn balls_are_lit_and_hide_what_is_behind() {
+        for up in [1, 2] {
+            let renderer = Renderer::new(Scenery { up, ..scenery(3) }, Style::default());
+            let picture = renderer.render(&snapshot(3, &[1.0, 0.5, 0.5], 0.008, &[1]));
+            // Red above all, in many shades.
+            let red = |p: [u8; 3]| f64::from(p[0]) > 1.4 * f64::from(p[1]) && p[0] > 60;
+            let area = count(&picture, red);
+            assert!((1500..20_000).contains(&area), "{area}");
+            let mut shades: Vec<u8> = picture
+                .rgb
+                .chunks_exact(3)
+                .filter(|p| red([p[0], p[1], p[2]]))
+                .map(|p| p[0])
+                .collect();
+            shades.sort_unstable();
+            shades.dedup();
+            assert!(shades.len() > 30, "{} shades", shades.len());
+
+            let Camera { eye, .. } = Camera::showing(scenery(3).bounds, up, 640.0 / 480.0);
+            let towards: Vec<f64> = (0..3)
+                .map(|i| [1.0, 0.5, 0.5][i] * 0.9 + 0.1 * f64::from(eye[i]))
+                .collect();
+            let both: Vec<f64> = [&[1.0, 0.5, 0.5], towards.as_slice()].concat();
+            let hidden = renderer.render(&snapshot(3, &both, 0.008, &[1, 0]));
+            assert!(count(&hidden, red) < area / 10);
+        }
+    }
+
+    #[test]
+    fn a_png_reads_back() {
+        let renderer = Renderer::new(
+            scenery(2),
+            Style {
+                width: 64,
+                height: 64,
+                ..Style::default()
+            },
+        );
+        let picture = renderer.render(&snapshot(2, &[1.0, 0.5], 0.01, &[0]));
+        let mut bytes = Vec::new();
+        picture.write_png(&mut bytes).unwrap();
+        let mut reader = png::Decoder::new(io::Cursor::new(bytes))
+            .read_info()
+            .unwrap();
+        let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut rgb).unwrap();
+        assert_eq!(
+            (info.width, info.height, rgb),
+            (picture.width, picture.height, picture.rgb)
+        );
+    }
+}

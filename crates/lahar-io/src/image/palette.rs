@@ -1,0 +1,166 @@
+//! Colours: those of the Taichi examples for what they have, others in their spirit; light and what screens show.
+
+/// Red, green, blue in sRGB.
+pub type Colour = [u8; 3];
+
+const fn hex(rgb: u32) -> Colour {
+    [(rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8]
+}
+
+/// Behind everything.
+pub const BACKGROUND: Colour = hex(0x11_2F41);
+
+/// Colours of fluids, solids, and grains or snow; a second material of a kind takes the second colour, and so on.
+const FLUIDS: [Colour; 4] = [
+    hex(0x06_8587),
+    hex(0x3F_7FD6),
+    hex(0xD9_9A2B),
+    hex(0x8A_5A44),
+];
+const SOLIDS: [Colour; 4] = [
+    hex(0xED_553B),
+    hex(0xF2_B134),
+    hex(0x9B_5DE5),
+    hex(0x5B_C26A),
+];
+const GRAINS: [Colour; 3] = [hex(0xEE_EEF0), hex(0xD8_B982), hex(0xA9_8467)];
+
+/// Colours of bodies, by number.
+pub(super) const BODIES: [Colour; 8] = [
+    hex(0x06_8587),
+    hex(0xED_553B),
+    hex(0xEE_EEF0),
+    hex(0xF2_B134),
+    hex(0x3F_7FD6),
+    hex(0x9B_5DE5),
+    hex(0x5B_C26A),
+    hex(0xD9_7AA6),
+];
+
+/// A colour a material, by the names of their models: water teal, jelly red, snow white.
+pub fn model_colours(models: &[&str]) -> Vec<Colour> {
+    let mut seen = [0_usize; 3];
+    models
+        .iter()
+        .map(|model| {
+            let (kind, colours): (usize, &[Colour]) = match *model {
+                "fluid" => (0, &FLUIDS),
+                "none" | "snow" | "sand" => (2, &GRAINS),
+                _ => (1, &SOLIDS),
+            };
+            let nth = seen[kind];
+            seen[kind] += 1;
+            colours[nth % colours.len()]
+        })
+        .collect()
+}
+
+/// What a colour becomes where its material is fast: lighter, towards white.
+pub(super) fn bright(colour: Colour) -> Colour {
+    // White stays tellable from fast white by turning towards a cold blue.
+    let towards: Colour = if colour.iter().all(|&c| c > 0xD0) {
+        [0xA8, 0xD4, 0xF0]
+    } else {
+        [0xD8, 0xFF, 0xFA]
+    };
+    core::array::from_fn(|i| ((f32::from(colour[i]) * 0.35) + f32::from(towards[i]) * 0.65) as u8)
+}
+
+/// Viridis at eight equal steps (van der Walt and Smith 2015): lightness grows evenly, tellable by the colour-blind.
+const VIRIDIS: [Colour; 9] = [
+    hex(0x44_0154),
+    hex(0x47_2D7B),
+    hex(0x3B_528B),
+    hex(0x2C_728E),
+    hex(0x21_918C),
+    hex(0x28_AE80),
+    hex(0x5E_C962),
+    hex(0xAD_DC30),
+    hex(0xFD_E725),
+];
+
+/// A perceptually even scale: dark violet at 0, yellow at 1; what is not a number is shown as 0.
+pub fn colour_map(value: f32) -> Colour {
+    let steps = (VIRIDIS.len() - 1) as f32;
+    let place = (value.clamp(0.0, 1.0) * steps).max(0.0);
+    let low = (place as usize).min(VIRIDIS.len() - 2);
+    let part = place - low as f32;
+    core::array::from_fn(|i| {
+        let (a, b) = (f32::from(VIRIDIS[low][i]), f32::from(VIRIDIS[low + 1][i]));
+        (a + (b - a) * part).round() as u8
+    })
+}
+
+/// Linear light, 0 to 1, of an sRGB colour.
+pub(super) fn linear(colour: Colour) -> [f32; 3] {
+    colour.map(|c| {
+        let c = f32::from(c) / 255.0;
+        if c <= 0.040_45 {
+            c / 12.92
+        } else {
+            ((c + 0.055) / 1.055).powf(2.4)
+        }
+    })
+}
+
+/// From linear light to sRGB by a table, fine enough that every one of the 256 levels is met.
+pub(super) struct ToScreen(Vec<u8>);
+
+impl ToScreen {
+    const STEPS: usize = 1 << 13;
+
+    pub(super) fn new() -> Self {
+        Self(
+            (0..=Self::STEPS)
+                .map(|i| {
+                    let c = i as f32 / Self::STEPS as f32;
+                    let s = if c <= 0.003_130_8 {
+                        12.92 * c
+                    } else {
+                        1.055 * c.powf(1.0 / 2.4) - 0.055
+                    };
+                    (s * 255.0).round() as u8
+                })
+                .collect(),
+        )
+    }
+
+    pub(super) fn colour(&self, light: [f32; 3]) -> Colour {
+        light.map(|c| self.0[(c.clamp(0.0, 1.0) * Self::STEPS as f32 + 0.5) as usize])
+    }
+}
+
+/// `a` at 0, `b` at 1.
+pub(super) fn mix(a: [f32; 3], b: [f32; 3], part: f32) -> [f32; 3] {
+    core::array::from_fn(|i| a[i] + (b[i] - a[i]) * part)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_colour_survives_the_way_through_light() {
+        let screen = ToScreen::new();
+        for c in 0..=255 {
+            assert_eq!(screen.colour(linear([c; 3])), [c; 3]);
+        }
+    }
+
+    #[test]
+    fn materials_of_a_kind_differ() {
+        let colours = model_colours(&["fluid", "corotated", "fluid", "snow"]);
+        assert_eq!(colours[0], hex(0x06_8587));
+        assert_eq!(colours[1], hex(0xED_553B));
+        assert_ne!(colours[0], colours[2]);
+        assert_eq!(colours[3], hex(0xEE_EEF0));
+    }
+
+    #[test]
+    fn the_scale_ends_where_it_should() {
+        assert_eq!(colour_map(0.0), VIRIDIS[0]);
+        assert_eq!(colour_map(7.0), VIRIDIS[8]);
+        assert_eq!(colour_map(0.5), VIRIDIS[4]);
+        assert_eq!(colour_map(f32::NAN), VIRIDIS[0]);
+    }
+}

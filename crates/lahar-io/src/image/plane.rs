@@ -1,0 +1,177 @@
+//! 2D: particles melt into one filled shape with a smooth edge.
+//!
+//! Every particle adds a bump w = (1 − r²/h²)² around it; where the bumps sum to more than a threshold there is
+//! material, coloured by the bumps' mean. Neighbours close the gaps between them, while a lone particle is a disc.
+
+use std::ops::Range;
+
+use super::palette::{self, BACKGROUND, ToScreen};
+use super::{Drawn, Picture, Scenery, Style};
+
+/// Reach h of a bump, in sizes of a particle: neighbours of a lattice still fill when pulled apart by half.
+const REACH: f32 = 1.45;
+
+/// Material is where bumps sum to this.
+const THRESHOLD: f32 = 0.45;
+
+/// Half the width of the soft edge, in sums of bumps.
+const SOFT: f32 = 0.12;
+
+/// Room around the domain, in parts of its larger side.
+const MARGIN: f64 = 0.025;
+
+/// Where the scene is on the picture.
+#[derive(Clone, Debug)]
+pub(super) struct Plane {
+    width: usize,
+    height: usize,
+    samples: usize,
+    /// World position \[m\] of the picture's top left corner.
+    corner: [f64; 2],
+    /// Samples a metre.
+    scale: f64,
+    /// The walls as left, right, bottom, top \[m\].
+    walls: Option<[f64; 4]>,
+}
+
+impl Plane {
+    pub(super) fn new(scenery: &Scenery, style: &Style) -> Self {
+        let (min, max) = scenery.bounds;
+        let room = MARGIN * (max[0] - min[0]).max(max[1] - min[1]);
+        let extent = [0, 1].map(|axis| (max[axis] - min[axis] + 2.0 * room).max(f64::MIN_POSITIVE));
+        let pixels = (f64::from(style.width) / extent[0]).min(f64::from(style.height) / extent[1]);
+        // Even sizes: some video formats take no others.
+        let even = |length: f64| ((length * pixels / 2.0).round() as usize * 2).max(16);
+        Self {
+            width: even(extent[0]),
+            height: even(extent[1]),
+            samples: style.samples as usize,
+            corner: [min[0] - room, max[1] + room],
+            scale: pixels * f64::from(style.samples),
+            walls: scenery.walls.then_some([min[0], max[0], min[1], max[1]]),
+        }
+    }
+
+    pub(super) fn render(&self, particles: &Drawn) -> Picture {
+        let (columns, rows) = (self.width * self.samples, self.height * self.samples);
+        // Sum of bumps, then of bump × colour.
+        let mut sums = vec![[0.0_f32; 4]; columns * rows];
+        for ((x, &size), colour) in particles
+            .position
+            .iter()
+            .zip(&particles.size)
+            .zip(&particles.colour)
+        {
+            // Never so small that it falls between samples.
+            let reach = (REACH * size * self.scale as f32).max(0.9 * self.samples as f32);
+            let u = ((f64::from(x[0]) - self.corner[0]) * self.scale) as f32 - 0.5;
+            let v = ((self.corner[1] - f64::from(x[1])) * self.scale) as f32 - 0.5;
+            let Some((left, right)) = span(u, reach, columns) else {
+                continue;
+            };
+            let Some((top, bottom)) = span(v, reach, rows) else {
+                continue;
+            };
+            let inverse = 1.0 / (reach * reach);
+            for row in top..=bottom {
+                let dv = row as f32 - v;
+                for (column, sum) in
+                    (left..).zip(&mut sums[row * columns + left..=row * columns + right])
+                {
+                    let du = column as f32 - u;
+                    let w = (1.0 - (du * du + dv * dv) * inverse).max(0.0);
+                    let w = w * w;
+                    sum[0] += w;
+                    sum[1] += w * colour[0];
+                    sum[2] += w * colour[1];
+                    sum[3] += w * colour[2];
+                }
+            }
+        }
+
+        let screen = ToScreen::new();
+        let background = palette::linear(BACKGROUND);
+        let share = 1.0 / (self.samples * self.samples) as f32;
+        let inside = self.inside();
+        let mut light = vec![background; self.width * self.height];
+        for row in 0..self.height {
+            for column in 0..self.width {
+                let [columns_inside, rows_inside] = &inside;
+                if !(columns_inside.contains(&column) && rows_inside.contains(&row)) {
+                    continue;
+                }
+                let mut total = [0.0; 3];
+                for sample in 0..self.samples {
+                    let start = (row * self.samples + sample) * columns + column * self.samples;
+                    for sum in &sums[start..start + self.samples] {
+                        let solid = ((sum[0] - THRESHOLD) / SOFT * 0.5 + 0.5).clamp(0.0, 1.0);
+                        let mean = 1.0 / sum[0].max(f32::MIN_POSITIVE);
+                        let colour = [sum[1] * mean, sum[2] * mean, sum[3] * mean];
+                        let seen = palette::mix(background, colour, solid);
+                        total = core::array::from_fn(|i| total[i] + seen[i] * share);
+                    }
+                }
+                light[row * self.width + column] = total;
+            }
+        }
+        self.draw_walls(&mut light);
+        Picture {
+            width: self.width as u32,
+            height: self.height as u32,
+            rgb: light
+                .into_iter()
+                .flat_map(|light| screen.colour(light))
+                .collect(),
+        }
+    }
+
+    /// Columns and rows within the walls; all without walls. A particle at a wall does not show beyond it.
+    fn inside(&self) -> [Range<usize>; 2] {
+        let Some([left, right, bottom, top]) = self.walls else {
+            return [0..self.width, 0..self.height];
+        };
+        let pixels = self.scale / self.samples as f64;
+        let at =
+            |length: f64, limit: usize| ((length * pixels).round().max(0.0) as usize).min(limit);
+        [
+            at(left - self.corner[0], self.width)..at(right - self.corner[0], self.width),
+            at(self.corner[1] - top, self.height)..at(self.corner[1] - bottom, self.height),
+        ]
+    }
+
+    /// A thin line just outside the domain, so that it hides nothing.
+    fn draw_walls(&self, light: &mut [[f32; 3]]) {
+        if self.walls.is_none() {
+            return;
+        }
+        let [columns, rows] = self.inside();
+        let line = palette::linear(WALL);
+        let mut dot = |row: usize, column: usize| {
+            if row < self.height && column < self.width {
+                light[row * self.width + column] = line;
+            }
+        };
+        // One before the start is beyond the picture's end where the start is 0.
+        let (left, top) = (columns.start.wrapping_sub(1), rows.start.wrapping_sub(1));
+        dot(top, left);
+        dot(top, columns.end);
+        for column in columns.clone() {
+            dot(top, column);
+            dot(rows.end, column);
+        }
+        for row in rows.start..=rows.end {
+            dot(row, left);
+            dot(row, columns.end);
+        }
+    }
+}
+
+/// Walls: the background, lighter.
+const WALL: palette::Colour = [0x4A, 0x6B, 0x7E];
+
+/// Samples within `reach` of `centre`, of `count`; none for what is outside or not a number.
+fn span(centre: f32, reach: f32, count: usize) -> Option<(usize, usize)> {
+    let low = (centre - reach).ceil().max(0.0);
+    let high = (centre + reach).floor().min(count as f32 - 1.0);
+    (low <= high).then_some((low as usize, high as usize))
+}

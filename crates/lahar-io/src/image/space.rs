@@ -1,0 +1,556 @@
+//! 3D: particles as lit balls over a floor, in the box of the domain.
+//!
+//! ```text
+//! balls ─► depth and nearest particle a sample ─► depth smoothed ─► normals ─► light, shadow, corners in the dark ─► mean of samples
+//! ```
+//! The smoothed depth makes a dense crowd of balls one surface, while lone ones stay balls: smoothing stops at jumps.
+
+use super::camera::{self, Camera, add_scaled, cross, dot, sub, unit};
+use super::palette::{self, BACKGROUND, ToScreen};
+use super::{Drawn, Picture, Scenery, Style};
+
+/// Radius of a ball, in sizes of a particle.
+const RADIUS: f32 = 0.72;
+
+/// Samples a side of the map of what the light sees.
+const SHADOW: usize = 512;
+
+/// A sample that shows no particle.
+const NOTHING: u32 = u32::MAX;
+
+/// Light that reaches everything, and the lamp's.
+const AMBIENT: f32 = 0.42;
+const LAMP: f32 = 0.78;
+
+#[derive(Clone, Debug)]
+pub(super) struct Space {
+    pub(super) camera: Camera,
+    width: usize,
+    height: usize,
+    samples: usize,
+    min: [f32; 3],
+    max: [f32; 3],
+    up: usize,
+    walls: bool,
+    /// Towards the lamp.
+    lamp: [f32; 3],
+}
+
+/// What each sample shows.
+struct Seen {
+    /// Along the view \[m\]; infinite where there is nothing.
+    depth: Vec<f32>,
+    particle: Vec<u32>,
+}
+
+impl Space {
+    pub(super) fn new(scenery: &Scenery, style: &Style) -> Self {
+        let (min, max) = scenery.bounds;
+        let (width, height) = (style.width as usize / 2 * 2, style.height as usize / 2 * 2);
+        let camera = Camera::showing(scenery.bounds, scenery.up, width as f32 / height as f32);
+        // Over the left shoulder of who looks.
+        let [right, _, forward] = camera.frame();
+        let mut lamp = add_scaled(add_scaled([0.0; 3], right, -0.45), forward, -0.35);
+        lamp[scenery.up] += 1.0;
+        Self {
+            camera,
+            width,
+            height,
+            samples: (style.samples as usize).min(2),
+            min: min.map(|x| x as f32),
+            max: max.map(|x| x as f32),
+            up: scenery.up,
+            walls: scenery.walls,
+            lamp: unit(lamp),
+        }
+    }
+
+    pub(super) fn render(&self, particles: &Drawn) -> Picture {
+        let eye = Eye::new(
+            &self.camera,
+            self.width * self.samples,
+            self.height * self.samples,
+        );
+        let shadow = Shadow::cast(self, particles);
+        let mut seen = eye.balls(particles);
+        let raw = seen.depth.clone();
+        eye.smooth(&mut seen, particles);
+        let mut light = eye.paint(self, &seen, particles, &shadow);
+        self.draw_edges(&eye, &raw, &mut light);
+
+        let screen = ToScreen::new();
+        let share = 1.0 / (self.samples * self.samples) as f32;
+        let mut rgb = Vec::with_capacity(3 * self.width * self.height);
+        for row in 0..self.height {
+            for column in 0..self.width {
+                let mut total = [0.0; 3];
+                for sample in 0..self.samples {
+                    let start = (row * self.samples + sample) * eye.width + column * self.samples;
+                    for seen in &light[start..start + self.samples] {
+                        total = add_scaled(total, *seen, share);
+                    }
+                }
+                rgb.extend(screen.colour(total));
+            }
+        }
+        Picture {
+            width: self.width as u32,
+            height: self.height as u32,
+            rgb,
+        }
+    }
+
+    /// Where a ray meets the floor inside the box \[m\], and how far away.
+    fn floor(&self, from: [f32; 3], along: [f32; 3]) -> Option<[f32; 3]> {
+        let distance = (self.min[self.up] - from[self.up]) / along[self.up];
+        let at = add_scaled(from, along, distance);
+        let inside = (0..3).all(|i| i == self.up || (self.min[i]..=self.max[i]).contains(&at[i]));
+        (distance > 0.0 && inside).then_some(at)
+    }
+
+    /// Lines of a grid over the floor, some eight along its longer side.
+    fn floor_colour(&self, at: [f32; 3], width: f32) -> [f32; 3] {
+        let longest = (0..3)
+            .filter(|&i| i != self.up)
+            .map(|i| self.max[i] - self.min[i])
+            .fold(0.0, f32::max);
+        let step = nice(longest / 8.0);
+        let mut line = 0.0_f32;
+        for axis in (0..3).filter(|&i| i != self.up) {
+            let place = (at[axis] - self.min[axis]) / step;
+            let away = (place - place.round()).abs() * step;
+            line = line.max((1.0 - away / width).clamp(0.0, 1.0));
+        }
+        palette::mix(palette::linear(FLOOR), palette::linear(FLOOR_LINE), line)
+    }
+
+    /// The box's twelve edges, faint, hidden by what is before them.
+    fn draw_edges(&self, eye: &Eye, depth: &[f32], light: &mut [[f32; 3]]) {
+        if !self.walls {
+            return;
+        }
+        let corners = camera::corners(self.min, self.max);
+        let colour = palette::linear(EDGE);
+        let thick = 0.5 * self.samples as f32;
+        for a in 0..8_usize {
+            for bit in 0..3 {
+                let b = a | 1 << bit;
+                if a == b {
+                    continue;
+                }
+                let (Some(p), Some(q)) = (eye.project(corners[a]), eye.project(corners[b])) else {
+                    continue;
+                };
+                let steps = (2.0 * (p[0] - q[0]).abs().max((p[1] - q[1]).abs()))
+                    .ceil()
+                    .clamp(1.0, 1e5);
+                let upright = (p[1] - q[1]).abs() > (p[0] - q[0]).abs();
+                let mut before = None;
+                for step in 0..=steps as usize {
+                    let part = step as f32 / steps;
+                    let x = p[0] + (q[0] - p[0]) * part;
+                    let y = p[1] + (q[1] - p[1]) * part;
+                    // 1/depth is linear on the picture.
+                    let z = 1.0 / (1.0 / p[2] + (1.0 / q[2] - 1.0 / p[2]) * part);
+                    let (along, across) = if upright { (y, x) } else { (x, y) };
+                    if before == Some(along.round() as isize) {
+                        continue;
+                    }
+                    before = Some(along.round() as isize);
+                    for offset in
+                        (across - thick).ceil() as isize..=(across + thick).floor() as isize
+                    {
+                        let (column, row) = if upright {
+                            (offset, along.round() as isize)
+                        } else {
+                            (along.round() as isize, offset)
+                        };
+                        if (0..eye.width as isize).contains(&column)
+                            && (0..eye.height as isize).contains(&row)
+                        {
+                            let at = row as usize * eye.width + column as usize;
+                            if z <= depth[at] * 1.001 {
+                                light[at] = palette::mix(light[at], colour, 0.75);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+const FLOOR: palette::Colour = [0x1D, 0x42, 0x57];
+const FLOOR_LINE: palette::Colour = [0x33, 0x5C, 0x72];
+const EDGE: palette::Colour = [0x6E, 0x93, 0xA6];
+const SKY: palette::Colour = [0x1A, 0x40, 0x55];
+
+/// 1, 2 or 5 times a power of ten, near `length`.
+fn nice(length: f32) -> f32 {
+    let power = 10.0_f32.powf(length.max(f32::MIN_POSITIVE).log10().floor());
+    let lead = length / power;
+    power
+        * if lead < 1.5 {
+            1.0
+        } else if lead < 3.5 {
+            2.0
+        } else if lead < 7.5 {
+            5.0
+        } else {
+            10.0
+        }
+}
+
+/// The camera with its picture of samples.
+struct Eye {
+    from: [f32; 3],
+    right: [f32; 3],
+    up: [f32; 3],
+    forward: [f32; 3],
+    width: usize,
+    height: usize,
+    /// Samples a unit of tangent.
+    focal: f32,
+}
+
+impl Eye {
+    fn new(camera: &Camera, width: usize, height: usize) -> Self {
+        let [right, up, forward] = camera.frame();
+        Self {
+            from: camera.eye,
+            right,
+            up,
+            forward,
+            width,
+            height,
+            focal: 0.5 * height as f32 / (0.5 * camera.angle).tan(),
+        }
+    }
+
+    /// Column, row (both as samples) and depth \[m\] of a point before the eye.
+    fn project(&self, point: [f32; 3]) -> Option<[f32; 3]> {
+        let r = sub(point, self.from);
+        let depth = dot(r, self.forward);
+        (depth > 1e-6).then(|| {
+            [
+                0.5 * self.width as f32 - 0.5 + dot(r, self.right) * self.focal / depth,
+                0.5 * self.height as f32 - 0.5 - dot(r, self.up) * self.focal / depth,
+                depth,
+            ]
+        })
+    }
+
+    /// Direction of a sample's ray, 1 along the view.
+    fn ray(&self, column: f32, row: f32) -> [f32; 3] {
+        let u = (column + 0.5 - 0.5 * self.width as f32) / self.focal;
+        let v = (0.5 * self.height as f32 - row - 0.5) / self.focal;
+        core::array::from_fn(|i| self.forward[i] + u * self.right[i] + v * self.up[i])
+    }
+
+    fn balls(&self, particles: &Drawn) -> Seen {
+        let mut depth = vec![f32::INFINITY; self.width * self.height];
+        let mut particle = vec![NOTHING; self.width * self.height];
+        for (index, (&x, &size)) in particles.position.iter().zip(&particles.size).enumerate() {
+            let Some([u, v, z]) = self.project(x) else {
+                continue;
+            };
+            let radius = RADIUS * size;
+            let reach = (radius * self.focal / z).max(0.75);
+            let (left, right) = (
+                (u - reach).ceil().max(0.0),
+                (u + reach).floor().min(self.width as f32 - 1.0),
+            );
+            let (top, bottom) = (
+                (v - reach).ceil().max(0.0),
+                (v + reach).floor().min(self.height as f32 - 1.0),
+            );
+            // Also false for what is not a number.
+            if !(left <= right && top <= bottom) {
+                continue;
+            }
+            let inverse = 1.0 / (reach * reach);
+            for row in top as usize..=bottom as usize {
+                let dv = row as f32 - v;
+                for column in left as usize..=right as usize {
+                    let du = column as f32 - u;
+                    let rest = 1.0 - (du * du + dv * dv) * inverse;
+                    if rest > 0.0 {
+                        let near = z - radius * rest.sqrt();
+                        let at = row * self.width + column;
+                        if near < depth[at] {
+                            depth[at] = near;
+                            particle[at] = index as u32;
+                        }
+                    }
+                }
+            }
+        }
+        Seen { depth, particle }
+    }
+
+    /// Depth, smoothed over about a ball, along rows and columns in turn; not across jumps.
+    fn smooth(&self, seen: &mut Seen, particles: &Drawn) {
+        let (w, h) = (self.width, self.height);
+        let mut other = seen.depth.clone();
+        for pass in 0..4 {
+            let across = pass % 2 == 0;
+            for row in 0..h {
+                for column in 0..w {
+                    let at = row * w + column;
+                    let centre = seen.depth[at];
+                    if seen.particle[at] == NOTHING {
+                        continue;
+                    }
+                    let radius = RADIUS * particles.size[seen.particle[at] as usize];
+                    let jump = 2.4 * radius;
+                    let reach = (1.3 * radius * self.focal / centre)
+                        .round()
+                        .clamp(1.0, 12.0) as usize;
+                    let (place, length, stride) = if across { (column, w, 1) } else { (row, h, w) };
+                    let side = reach.min(place).min(length - 1 - place);
+                    let falloff = 1.0 / ((reach * reach) as f32 * 1.3);
+                    let (mut total, mut weight) = (centre, 1.0);
+                    for step in 1..=side {
+                        let (a, b) = (
+                            seen.depth[at - step * stride],
+                            seen.depth[at + step * stride],
+                        );
+                        // In pairs, so that slopes stay.
+                        if (a - centre).abs() < jump && (b - centre).abs() < jump {
+                            let share = 1.0 - (step * step) as f32 * falloff;
+                            total += share * (a + b);
+                            weight += 2.0 * share;
+                        }
+                    }
+                    other[at] = total / weight;
+                }
+            }
+            core::mem::swap(&mut seen.depth, &mut other);
+        }
+    }
+
+    fn point(&self, depth: &[f32], at: usize) -> [f32; 3] {
+        add_scaled(
+            self.from,
+            self.ray((at % self.width) as f32, (at / self.width) as f32),
+            depth[at],
+        )
+    }
+
+    /// The normal of the smoothed depth, by the smaller of the differences on either side.
+    fn normal(&self, depth: &[f32], at: usize, centre: [f32; 3]) -> [f32; 3] {
+        let (column, row) = (at % self.width, at / self.width);
+        let difference = |back: Option<usize>, front: Option<usize>| {
+            let slope = |to: usize| depth[to] - depth[at];
+            let (back, front) = (
+                back.filter(|&to| depth[to].is_finite()),
+                front.filter(|&to| depth[to].is_finite()),
+            );
+            match (back, front) {
+                (Some(b), Some(f)) if slope(b).abs() < slope(f).abs() => Some((b, -1.0)),
+                (_, Some(f)) => Some((f, 1.0)),
+                (Some(b), None) => Some((b, -1.0)),
+                (None, None) => None,
+            }
+        };
+        let across = difference(
+            (column > 0).then(|| at - 1),
+            (column + 1 < self.width).then(|| at + 1),
+        );
+        let down = difference(
+            (row > 0).then(|| at - self.width),
+            (row + 1 < self.height).then(|| at + self.width),
+        );
+        match (across, down) {
+            (Some((a, s)), Some((d, t))) => {
+                let across = sub(self.point(depth, a), centre).map(|c| c * s);
+                let down = sub(self.point(depth, d), centre).map(|c| c * t);
+                unit(cross(down, across))
+            }
+            _ => unit(sub(self.from, centre)),
+        }
+    }
+
+    /// How much of the sky is hidden by what is near: 0 open, 1 closed.
+    fn hidden(
+        &self,
+        depth: &[f32],
+        at: usize,
+        centre: [f32; 3],
+        normal: [f32; 3],
+        reach: f32,
+    ) -> f32 {
+        let (column, row) = ((at % self.width) as f32, (at / self.width) as f32);
+        let samples = (reach * self.focal / depth[at]).clamp(3.0, 60.0);
+        // Turned by a fixed pattern over 4 × 4 samples, which the mean of samples mixes.
+        let turn = ((at % self.width % 4) * 4 + at / self.width % 4) as f32
+            * (core::f32::consts::TAU / 16.0);
+        let mut sum = 0.0;
+        for i in 0..DIRECTIONS {
+            let angle = turn + i as f32 * 2.399_963; // the golden angle
+            let away = samples * ((i as f32 + 0.7) / DIRECTIONS as f32);
+            let (c, r) = (column + away * angle.cos(), row + away * angle.sin());
+            if c < 0.0 || r < 0.0 || c >= self.width as f32 || r >= self.height as f32 {
+                continue;
+            }
+            let other = r as usize * self.width + c as usize;
+            if !depth[other].is_finite() {
+                continue;
+            }
+            let to = sub(self.point(depth, other), centre);
+            let distance = dot(to, to).sqrt().max(1e-9);
+            let rise = (dot(to, normal) / distance - 0.12).max(0.0);
+            sum += rise * (1.0 - distance / (2.5 * reach)).max(0.0);
+        }
+        (sum * 2.2 / DIRECTIONS as f32).min(1.0)
+    }
+
+    fn paint(
+        &self,
+        space: &Space,
+        seen: &Seen,
+        particles: &Drawn,
+        shadow: &Shadow,
+    ) -> Vec<[f32; 3]> {
+        let far = palette::linear(BACKGROUND);
+        let sky = palette::linear(SKY);
+        let diagonal = dot(sub(space.max, space.min), sub(space.max, space.min)).sqrt();
+        let nearest = dot(sub(space.camera.target, self.from), self.forward) - 0.5 * diagonal;
+        let mut light = Vec::with_capacity(seen.depth.len());
+        for at in 0..seen.depth.len() {
+            let (column, row) = ((at % self.width) as f32, (at / self.width) as f32);
+            let ray = self.ray(column, row);
+            let particle = seen.particle[at];
+            if particle == NOTHING {
+                let backdrop = palette::mix(sky, far, (row / self.height as f32).min(1.0));
+                light.push(space.floor(self.from, ray).map_or(backdrop, |floor| {
+                    let away = dot(sub(floor, self.from), self.forward);
+                    let colour =
+                        space.floor_colour(floor, 1.1 * away / self.focal * space.samples as f32);
+                    let lit = 1.0 - 0.62 * shadow.at(floor, 0.0);
+                    colour.map(|c| c * lit)
+                }));
+                continue;
+            }
+            let radius = RADIUS * particles.size[particle as usize];
+            let centre = self.point(&seen.depth, at);
+            let normal = self.normal(&seen.depth, at, centre);
+            let view = unit(ray.map(|c| -c));
+            let open = 1.0 - 0.75 * self.hidden(&seen.depth, at, centre, normal, 5.0 * radius);
+            let lamp = dot(normal, space.lamp);
+            let lit = LAMP * lamp.max(0.0) * (1.0 - 0.75 * shadow.at(centre, 2.2 * radius));
+            // From above comes more light than from below.
+            let around = AMBIENT * (0.75 + 0.25 * normal[space.up]) * open;
+            let half = unit(add_scaled(space.lamp, view, 1.0));
+            let shine = if lit > 0.0 {
+                dot(normal, half).max(0.0).powi(40) * 0.22 * (lit / LAMP)
+            } else {
+                0.0
+            };
+            let rim = (1.0 - dot(normal, view).max(0.0)).powi(4) * 0.10 * open;
+            let colour = particles.colour[particle as usize];
+            let surface: [f32; 3] =
+                core::array::from_fn(|i| colour[i] * (around + lit) * 1.15 + shine + rim * sky[i]);
+            let haze = ((seen.depth[at] - nearest) / diagonal).clamp(0.0, 1.0) * 0.28;
+            light.push(palette::mix(surface, sky, haze));
+        }
+        light
+    }
+}
+
+/// Looks around a sample for what hides the sky.
+const DIRECTIONS: usize = 10;
+
+/// What the lamp sees, from far away: the height along its direction of the first thing it meets.
+struct Shadow {
+    side: [f32; 3],
+    other: [f32; 3],
+    lamp: [f32; 3],
+    corner: [f32; 2],
+    /// Samples a metre.
+    scale: f32,
+    height: Vec<f32>,
+}
+
+impl Shadow {
+    fn cast(space: &Space, particles: &Drawn) -> Self {
+        let lamp = space.lamp;
+        let helper = if lamp[0].abs() < 0.7 {
+            [1.0, 0.0, 0.0]
+        } else {
+            [0.0, 1.0, 0.0]
+        };
+        let side = unit(cross(lamp, helper));
+        let other = cross(lamp, side);
+        let corners = camera::corners(space.min, space.max);
+        let range = |axis: [f32; 3]| {
+            corners
+                .iter()
+                .map(|&c| dot(c, axis))
+                .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), x| {
+                    (low.min(x), high.max(x))
+                })
+        };
+        let (a, b) = (range(side), range(other));
+        let extent = (a.1 - a.0).max(b.1 - b.0).max(f32::MIN_POSITIVE);
+        let mut map = Self {
+            side,
+            other,
+            lamp,
+            corner: [a.0, b.0],
+            scale: (SHADOW - 1) as f32 / extent,
+            height: vec![f32::NEG_INFINITY; SHADOW * SHADOW],
+        };
+        for (&x, &size) in particles.position.iter().zip(&particles.size) {
+            let [u, v, height] = map.place(x);
+            let reach = (RADIUS * size * map.scale).max(0.71);
+            let (left, right) = (
+                (u - reach).ceil().max(0.0),
+                (u + reach).floor().min(SHADOW as f32 - 1.0),
+            );
+            let (top, bottom) = (
+                (v - reach).ceil().max(0.0),
+                (v + reach).floor().min(SHADOW as f32 - 1.0),
+            );
+            if !(left <= right && top <= bottom) {
+                continue;
+            }
+            for row in top as usize..=bottom as usize {
+                for column in left as usize..=right as usize {
+                    let (du, dv) = (column as f32 - u, row as f32 - v);
+                    let at = &mut map.height[row * SHADOW + column];
+                    if du * du + dv * dv <= reach * reach && height > *at {
+                        *at = height;
+                    }
+                }
+            }
+        }
+        map
+    }
+
+    fn place(&self, x: [f32; 3]) -> [f32; 3] {
+        [
+            (dot(x, self.side) - self.corner[0]) * self.scale,
+            (dot(x, self.other) - self.corner[1]) * self.scale,
+            dot(x, self.lamp),
+        ]
+    }
+
+    /// How much of the lamp is hidden from `x` by what is more than `slack` \[m\] nearer to it: 0 to 1.
+    fn at(&self, x: [f32; 3], slack: f32) -> f32 {
+        let [u, v, height] = self.place(x);
+        let mut hidden = 0.0;
+        for row in -2..=2_i32 {
+            for column in -2..=2_i32 {
+                let (c, r) = (u + 1.2 * column as f32, v + 1.2 * row as f32);
+                if c >= 0.0 && r >= 0.0 && c < SHADOW as f32 && r < SHADOW as f32 {
+                    let above = self.height[r as usize * SHADOW + c as usize] - height;
+                    if above > slack {
+                        hidden += 1.0 / 25.0;
+                    }
+                }
+            }
+        }
+        hidden
+    }
+}

@@ -1,0 +1,133 @@
+//! `diagnostics.csv`: a row a frame, nothing that depends on the clock.
+
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+use lahar::Diagnostics;
+
+use super::OutputError;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The growing file. Every row is handed to the system at once.
+#[derive(Debug)]
+pub struct DiagnosticsFile {
+    path: PathBuf,
+    file: File,
+    dimension: usize,
+}
+
+impl DiagnosticsFile {
+    /// A new file with its header; `dimension` (2 or 3) decides how many components vectors have.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn create(path: &Path, dimension: usize) -> Result<Self, OutputError> {
+        let file = File::create(path).map_err(OutputError::at(path))?;
+        let mut this = Self {
+            path: path.to_owned(),
+            file,
+            dimension,
+        };
+        this.line(&header(dimension))?;
+        Ok(this)
+    }
+
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn push(&mut self, diagnostics: &Diagnostics) -> Result<(), OutputError> {
+        self.line(&row(diagnostics, self.dimension))
+    }
+
+    fn line(&mut self, line: &str) -> Result<(), OutputError> {
+        self.file
+            .write_all(line.as_bytes())
+            .map_err(OutputError::at(&self.path))
+    }
+}
+
+/// Components of angular momentum: z in 2D.
+fn turns(dimension: usize) -> core::ops::Range<usize> {
+    if dimension == 2 { 2..3 } else { 0..3 }
+}
+
+fn header(dimension: usize) -> String {
+    let mut line = "time,substeps,dt_min,dt_limit,particles,mass".to_owned();
+    for axis in &AXES[..dimension] {
+        line += ",momentum_";
+        line += axis;
+    }
+    for axis in &AXES[turns(dimension)] {
+        line += ",angular_momentum_";
+        line += axis;
+    }
+    line += ",kinetic_energy,elastic_energy,potential_energy,max_speed,volume,particle_volume,escaped,escaped_mass\n";
+    line
+}
+
+fn row(d: &Diagnostics, dimension: usize) -> String {
+    // `{:?}` writes the fewest digits that read back to the same bits, with an exponent where that is shorter.
+    let mut line = format!(
+        "{:?},{},{:?},{},{},",
+        d.time, d.substeps, d.dt_min, d.dt_limit, d.particles
+    );
+    let mut add = |values: &[f64]| {
+        for value in values {
+            write!(line, "{value:?},").expect("strings take everything");
+        }
+    };
+    add(&[d.mass]);
+    add(&d.momentum[..dimension]);
+    add(&d.angular_momentum[turns(dimension)]);
+    add(&[
+        d.kinetic_energy,
+        d.elastic_energy,
+        d.potential_energy,
+        d.max_speed,
+        d.volume,
+        d.particle_volume,
+    ]);
+    writeln!(line, "{},{:?}", d.escaped, d.escaped_mass).expect("strings take everything");
+    line
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_fit_the_header_and_read_back_to_the_bit() {
+        let diagnostics = Diagnostics {
+            time: 0.1 + 0.2,
+            dt_min: 1.234_567_890_123_456_7e-7,
+            dt_limit: "sound",
+            mass: 1e300,
+            momentum: [-0.0, f64::MIN_POSITIVE, 1.0 / 3.0],
+            ..Diagnostics::default()
+        };
+        for dimension in [2, 3] {
+            let (names, values) = (header(dimension), row(&diagnostics, dimension));
+            let names: Vec<_> = names.trim_end().split(',').collect();
+            let values: Vec<_> = values.trim_end().split(',').collect();
+            assert_eq!(names.len(), values.len());
+            let value = |name: &str| {
+                values[names.iter().position(|n| *n == name).unwrap()]
+                    .parse::<f64>()
+                    .unwrap()
+                    .to_bits()
+            };
+            assert_eq!(value("time"), diagnostics.time.to_bits());
+            assert_eq!(value("dt_min"), diagnostics.dt_min.to_bits());
+            assert_eq!(value("mass"), 1e300_f64.to_bits());
+            assert_eq!(value("momentum_x"), (-0.0_f64).to_bits());
+            assert_eq!(value("momentum_y"), f64::MIN_POSITIVE.to_bits());
+            assert_eq!(names.contains(&"momentum_z"), dimension == 3);
+            assert_eq!(names.contains(&"angular_momentum_x"), dimension == 3);
+            assert!(names.contains(&"angular_momentum_z"));
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! What a run leaves behind, and the thread that writes it.
+//!
+//! ```text
+//! DIR/run.json          what was run, and how it went            record
+//! DIR/diagnostics.csv   totals, a row a frame                     diagnostics
+//! DIR/frames/000000.npz particles                                 frames
+//! DIR/images/000000.png pictures, and DIR/video.gif               crate::image
+//! ```
+//! Every file but the growing csv is written under a temporary name and renamed, so that a run killed at any moment
+//! leaves whole files only. A frame's row is written after its files: what the csv lists is there.
+
+mod diagnostics;
+mod folder;
+mod frames;
+mod record;
+mod writer;
+
+use std::fmt;
+use std::fs::{self, File};
+use std::io::{self, BufWriter};
+use std::path::{Path, PathBuf};
+
+pub use diagnostics::DiagnosticsFile;
+pub use folder::RunFolder;
+pub use frames::{frame_name, write_frame};
+pub use record::{PhaseSeconds, Record, Status};
+pub use writer::{Film, Plan, Writer, Written, film_pace};
+
+/// A file or folder that could not be made or written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputError {
+    /// Which.
+    pub path: PathBuf,
+    /// What is wrong and, where there is something to do, what.
+    pub what: String,
+    /// Whether it is the command that is wrong (a folder that is taken), not the disk.
+    pub usage: bool,
+}
+
+impl OutputError {
+    fn at(path: &Path) -> impl Fn(io::Error) -> Self + '_ {
+        move |error| Self {
+            path: path.to_owned(),
+            what: format!("cannot write: {error}"),
+            usage: false,
+        }
+    }
+
+    fn usage(path: &Path, what: impl Into<String>) -> Self {
+        Self {
+            path: path.to_owned(),
+            what: what.into(),
+            usage: true,
+        }
+    }
+}
+
+impl fmt::Display for OutputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.path.display(), self.what)
+    }
+}
+
+impl std::error::Error for OutputError {}
+
+/// Writes `path` whole or not at all: into a temporary file beside it, which then takes its name.
+fn write_whole(
+    path: &Path,
+    sync: bool,
+    write: impl FnOnce(BufWriter<File>) -> io::Result<BufWriter<File>>,
+) -> Result<(), OutputError> {
+    let mut name = path.file_name().unwrap_or_default().to_owned();
+    name.push(".partial");
+    let partial = path.with_file_name(name);
+    let result = File::create(&partial)
+        .and_then(|file| write(BufWriter::with_capacity(1 << 18, file)))
+        .and_then(|writer| writer.into_inner().map_err(io::IntoInnerError::into_error))
+        .and_then(|file| if sync { file.sync_all() } else { Ok(()) })
+        .and_then(|()| fs::rename(&partial, path));
+    result.map_err(|error| {
+        // What could not be finished (a full disk) is not left lying about.
+        drop(fs::remove_file(&partial));
+        OutputError::at(path)(error)
+    })
+}

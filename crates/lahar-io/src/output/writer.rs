@@ -1,0 +1,373 @@
+//! The thread that writes, so that the solver need not wait: a few frames may be under way, then it does.
+
+use std::fs;
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::thread::{Builder, JoinHandle};
+
+use lahar::{Diagnostics, Snapshot};
+
+use super::{DiagnosticsFile, OutputError, RunFolder, frame_name, write_frame, write_whole};
+use crate::image::{self, Renderer};
+use crate::npz::Compression;
+
+/// Frames that may be under way: one being written, one ready.
+const UNDER_WAY: usize = 2;
+
+/// What to write of a run.
+pub struct Plan {
+    /// Where.
+    pub folder: RunFolder,
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Particles of every frame as `.npz`, if wanted.
+    pub npz: Option<Compression>,
+    /// Draws frames; needed for pictures and film.
+    pub renderer: Option<Renderer>,
+    /// Whether every frame's picture is kept as PNG.
+    pub images: bool,
+    /// The film, if wanted.
+    pub film: Option<Film>,
+}
+
+/// Which frames a film shows, and how fast.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Film {
+    /// Every so many frames.
+    pub every: u64,
+    /// Pictures a second.
+    pub rate: f64,
+}
+
+/// Most pictures a second of a film.
+const FILM_RATE: f64 = 30.0;
+
+/// Films of less than this \[s\] are slowed down.
+const SHORT_FILM: f64 = 2.0;
+
+/// A film of `frames` frames at `frame_rate` a simulated second: in real time, skipping frames over 30 a second; runs
+/// that would flash by are slowed down to two seconds or more.
+pub fn film_pace(frame_rate: f64, frames: u64) -> Film {
+    let every = (frame_rate / FILM_RATE).ceil().max(1.0);
+    let real_time = Film {
+        every: every as u64,
+        rate: frame_rate / every,
+    };
+    if frames as f64 / frame_rate >= SHORT_FILM {
+        return real_time;
+    }
+    let every = (frames as f64 / (SHORT_FILM * FILM_RATE)).floor().max(1.0);
+    Film {
+        every: every as u64,
+        rate: (frames as f64 / every / SHORT_FILM).clamp(5.0, FILM_RATE),
+    }
+}
+
+/// What a writer has written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Written {
+    /// Frames, pictures or not.
+    pub frames: u64,
+    /// Pictures kept as PNG.
+    pub images: u64,
+    /// Whether there is a film.
+    pub film: bool,
+}
+
+struct Job {
+    index: u64,
+    snapshot: Snapshot,
+    diagnostics: Diagnostics,
+}
+
+/// Takes frames and writes them, in order, in the background.
+pub struct Writer {
+    jobs: Option<SyncSender<Job>>,
+    thread: Option<JoinHandle<Result<Written, OutputError>>>,
+}
+
+impl Writer {
+    /// Makes the folders and files and starts the thread.
+    ///
+    /// # Errors
+    /// If something cannot be made.
+    pub fn start(plan: Plan) -> Result<Self, OutputError> {
+        let folder = &plan.folder;
+        let diagnostics = DiagnosticsFile::create(&folder.diagnostics(), plan.dimension)?;
+        for (wanted, path) in [
+            (plan.npz.is_some(), folder.frames()),
+            (plan.images, folder.images()),
+        ] {
+            if wanted {
+                fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
+            }
+        }
+        let (jobs, queue) = sync_channel::<Job>(UNDER_WAY - 1);
+        let path = folder.path().to_owned();
+        let thread = Builder::new()
+            .name("output".to_owned())
+            .spawn(move || {
+                let mut work = Work::new(plan, diagnostics);
+                for job in queue {
+                    work.frame(&job)?;
+                }
+                work.finish()
+            })
+            .map_err(OutputError::at(&path))?;
+        Ok(Self {
+            jobs: Some(jobs),
+            thread: Some(thread),
+        })
+    }
+
+    /// Hands over a frame; waits if too many are under way.
+    ///
+    /// # Errors
+    /// What went wrong with an earlier frame.
+    pub fn frame(
+        &mut self,
+        index: u64,
+        snapshot: Snapshot,
+        diagnostics: Diagnostics,
+    ) -> Result<(), OutputError> {
+        let job = Job {
+            index,
+            snapshot,
+            diagnostics,
+        };
+        if self
+            .jobs
+            .as_ref()
+            .is_some_and(|jobs| jobs.send(job).is_ok())
+        {
+            return Ok(());
+        }
+        // The thread is gone, so it has an error to tell.
+        self.end().map(|_| ())
+    }
+
+    /// Writes what is under way, and the film.
+    ///
+    /// # Errors
+    /// What went wrong.
+    pub fn finish(mut self) -> Result<Written, OutputError> {
+        self.end()
+    }
+
+    fn end(&mut self) -> Result<Written, OutputError> {
+        self.jobs = None;
+        match self.thread.take().map(JoinHandle::join) {
+            Some(Ok(result)) => result,
+            Some(Err(panic)) => std::panic::resume_unwind(panic),
+            None => Ok(Written::default()),
+        }
+    }
+}
+
+impl Drop for Writer {
+    fn drop(&mut self) {
+        // Left without `finish`, another error is being told; what is under way is still written whole.
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            drop(thread.join());
+        }
+    }
+}
+
+struct Work {
+    plan: Plan,
+    diagnostics: DiagnosticsFile,
+    film: Option<image::Film>,
+    written: Written,
+}
+
+impl Work {
+    fn new(plan: Plan, diagnostics: DiagnosticsFile) -> Self {
+        Self {
+            film: plan.film.map(|film| image::Film::new(film.rate)),
+            plan,
+            diagnostics,
+            written: Written::default(),
+        }
+    }
+
+    fn frame(&mut self, job: &Job) -> Result<(), OutputError> {
+        let folder = &self.plan.folder;
+        if let Some(compression) = self.plan.npz {
+            let path = folder.frames().join(frame_name(job.index, "npz"));
+            write_frame(&path, &job.snapshot, compression)?;
+        }
+        let filmed = self
+            .plan
+            .film
+            .is_some_and(|film| job.index.is_multiple_of(film.every));
+        if let Some(renderer) = self
+            .plan
+            .renderer
+            .as_ref()
+            .filter(|_| filmed || self.plan.images)
+        {
+            let picture = renderer.render(&job.snapshot);
+            if self.plan.images {
+                let path = folder.images().join(frame_name(job.index, "png"));
+                write_whole(&path, false, |mut writer| {
+                    picture.write_png(&mut writer)?;
+                    Ok(writer)
+                })?;
+                self.written.images += 1;
+            }
+            if let Some(film) = self.film.as_mut().filter(|_| filmed) {
+                film.push(&picture)
+                    .map_err(OutputError::at(&folder.video()))?;
+            }
+        }
+        self.diagnostics.push(&job.diagnostics)?;
+        self.written.frames += 1;
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<Written, OutputError> {
+        if let Some(film) = self.film.filter(|film| !film.is_empty()) {
+            write_whole(&self.plan.folder.video(), false, |mut writer| {
+                film.write(&mut writer)?;
+                Ok(writer)
+            })?;
+            self.written.film = true;
+        }
+        Ok(self.written)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::{Scenery, Style, model_colours};
+    use lahar::{Data, Field};
+
+    fn plan(folder: RunFolder) -> Plan {
+        let scenery = Scenery {
+            dimension: 2,
+            bounds: ([0.0; 3], [1.0, 1.0, 0.0]),
+            walls: true,
+            up: 1,
+            dx: 0.1,
+            speed: 1.0,
+            colours: model_colours(&["fluid"]),
+        };
+        Plan {
+            folder,
+            dimension: 2,
+            npz: Some(Compression::Stored),
+            renderer: Some(Renderer::new(
+                scenery,
+                Style {
+                    width: 64,
+                    height: 64,
+                    ..Style::default()
+                },
+            )),
+            images: true,
+            film: Some(Film {
+                every: 2,
+                rate: 25.0,
+            }),
+        }
+    }
+
+    fn snapshot(x: f64) -> Snapshot {
+        Snapshot {
+            time: x,
+            dimension: 2,
+            count: 1,
+            columns: vec![(Field::Position, Data::F64(vec![x, 0.5]))],
+        }
+    }
+
+    #[test]
+    fn everything_asked_for_is_there() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(&root.path().join("run"), false).unwrap();
+        let mut writer = Writer::start(plan(folder.clone())).unwrap();
+        for index in 0..9 {
+            let x = 0.1 * index as f64;
+            writer
+                .frame(
+                    index,
+                    snapshot(x),
+                    Diagnostics {
+                        time: x,
+                        ..Diagnostics::default()
+                    },
+                )
+                .unwrap();
+        }
+        let written = writer.finish().unwrap();
+        assert_eq!(
+            written,
+            Written {
+                frames: 9,
+                images: 9,
+                film: true
+            }
+        );
+        assert_eq!(
+            fs::read_to_string(folder.diagnostics())
+                .unwrap()
+                .lines()
+                .count(),
+            10
+        );
+        assert_eq!(fs::read_dir(folder.frames()).unwrap().count(), 9);
+        assert_eq!(fs::read_dir(folder.images()).unwrap().count(), 9);
+        assert!(fs::read(folder.video()).unwrap().starts_with(b"GIF89a"));
+    }
+
+    #[test]
+    fn an_error_in_the_background_reaches_the_solver() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = RunFolder::at(&root.path().join("run"), false).unwrap();
+        let mut writer = Writer::start(plan(folder.clone())).unwrap();
+        fs::remove_dir_all(folder.frames()).unwrap();
+        let error = (0..100)
+            .find_map(|index| {
+                writer
+                    .frame(index, snapshot(0.5), Diagnostics::default())
+                    .err()
+            })
+            .expect("the folder is gone");
+        assert!(error.path.ends_with("frames/000000.npz"), "{error}");
+        assert!(!error.usage);
+    }
+
+    #[test]
+    fn films_play_in_real_time_unless_that_is_a_flash() {
+        assert_eq!(
+            film_pace(60.0, 180),
+            Film {
+                every: 2,
+                rate: 30.0
+            }
+        );
+        assert_eq!(
+            film_pace(25.0, 100),
+            Film {
+                every: 1,
+                rate: 25.0
+            }
+        );
+        assert_eq!(
+            film_pace(1000.0, 100),
+            Film {
+                every: 1,
+                rate: 30.0
+            }
+        );
+        assert_eq!(
+            film_pace(1000.0, 600),
+            Film {
+                every: 10,
+                rate: 30.0
+            }
+        );
+        assert_eq!(film_pace(60.0, 3).every, 1);
+    }
+}

@@ -1,0 +1,313 @@
+//! Lists of particles to start from: comma-separated text, or NumPy's .npz.
+
+use crate::error::{SceneError, nearest};
+
+/// Columns of a list, one entry a particle; what the file does not have is empty.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ParticleList<const D: usize> {
+    /// Positions \[m\].
+    pub position: Vec<[f64; D]>,
+    /// Velocities \[m/s\].
+    pub velocity: Vec<[f64; D]>,
+    /// Rest volumes \[m³; m² in 2D\].
+    pub volume: Vec<f64>,
+    /// Masses \[kg\].
+    pub mass: Vec<f64>,
+    /// J = V/V⁰.
+    pub jacobian: Vec<f64>,
+    /// F, row by row.
+    pub deformation_gradient: Vec<[[f64; D]; D]>,
+    /// C \[1/s\], row by row.
+    pub affine: Vec<[[f64; D]; D]>,
+    /// What is odd about the file.
+    pub warnings: Vec<String>,
+}
+
+/// What a column of a text file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Column {
+    Position(usize),
+    Velocity(usize),
+    Volume,
+    Mass,
+    Jacobian,
+    Gradient(usize, usize),
+    Affine(usize, usize),
+}
+
+impl Column {
+    /// Whether zero and negative numbers make no sense in it.
+    fn is_positive(self) -> bool {
+        matches!(self, Self::Volume | Self::Mass | Self::Jacobian)
+    }
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Every column that a file may have, by its name.
+fn known_columns<const D: usize>() -> Vec<(String, Column)> {
+    let mut known = Vec::new();
+    known.extend((0..D).map(|i| (AXES[i].to_owned(), Column::Position(i))));
+    known.extend((0..D).map(|i| (format!("v{}", AXES[i]), Column::Velocity(i))));
+    known.extend([
+        ("volume".to_owned(), Column::Volume),
+        ("mass".to_owned(), Column::Mass),
+        ("J".to_owned(), Column::Jacobian),
+    ]);
+    for i in 0..D {
+        for j in 0..D {
+            known.push((format!("F{}{}", i + 1, j + 1), Column::Gradient(i, j)));
+            known.push((format!("C{}{}", i + 1, j + 1), Column::Affine(i, j)));
+        }
+    }
+    known
+}
+
+/// Reads comma-separated text with a header line; lines that begin with `#` and empty lines are
+/// skipped. `name` is the file's, for messages.
+///
+/// # Errors
+/// The first line that is not what the header says.
+pub fn parse_csv<const D: usize>(text: &str, name: &str) -> Result<ParticleList<D>, SceneError> {
+    let mut lines =
+        Lines { text, at: 0 }.filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
+    let Some((start, header)) = lines.next() else {
+        return Err(
+            SceneError::of_file(name, "the particle list is empty").hint(format!(
+                "its first line names the columns: {}, ..",
+                AXES[..D].join(",")
+            )),
+        );
+    };
+    let columns = parse_header::<D>(text, name, start, header)?;
+    let mut list = ParticleList::default();
+    let has = |column: Column| columns.contains(&column);
+    for (start, line) in lines {
+        let mut position = [0.0; D];
+        let mut velocity = [0.0; D];
+        let mut gradient = [[0.0; D]; D];
+        let mut affine = [[0.0; D]; D];
+        let mut found = 0;
+        for (field_start, field) in fields(start, line) {
+            let Some(&column) = columns.get(found) else {
+                found = line.split(',').count();
+                break;
+            };
+            let error = |message: String| {
+                Err(SceneError::at(
+                    name,
+                    text,
+                    field_start,
+                    field_start + field.len(),
+                    message,
+                ))
+            };
+            let number = match field.parse::<f64>() {
+                Ok(number) if number.is_finite() => number,
+                Ok(number) => return error(format!("{number} is no value for a particle")),
+                Err(_) => {
+                    return error(format!(
+                        "\"{}\" is not a number",
+                        crate::scene::shorten(field)
+                    ));
+                }
+            };
+            if column.is_positive() && number <= 0.0 {
+                return error(format!("{number} must be above 0"));
+            }
+            match column {
+                Column::Position(i) => position[i] = number,
+                Column::Velocity(i) => velocity[i] = number,
+                Column::Volume => list.volume.push(number),
+                Column::Mass => list.mass.push(number),
+                Column::Jacobian => list.jacobian.push(number),
+                Column::Gradient(i, j) => gradient[i][j] = number,
+                Column::Affine(i, j) => affine[i][j] = number,
+            }
+            found += 1;
+        }
+        if found != columns.len() {
+            let error = SceneError::at(
+                name,
+                text,
+                start,
+                start + line.len(),
+                format!(
+                    "this line has {found} values, the header names {}",
+                    columns.len()
+                ),
+            );
+            let last = text[start..].trim_end().lines().count() <= 1;
+            return Err(if last {
+                error.hint("it is the last line: was the file cut short?")
+            } else {
+                error
+            });
+        }
+        list.position.push(position);
+        if has(Column::Velocity(0)) {
+            list.velocity.push(velocity);
+        }
+        if has(Column::Gradient(0, 0)) {
+            list.deformation_gradient.push(gradient);
+        }
+        if has(Column::Affine(0, 0)) {
+            list.affine.push(affine);
+        }
+    }
+    if !text.ends_with('\n') {
+        list.warnings.push(format!(
+            "{name}: the last line has no line end; was the file cut short?"
+        ));
+    }
+    Ok(list)
+}
+
+fn parse_header<const D: usize>(
+    text: &str,
+    name: &str,
+    start: usize,
+    header: &str,
+) -> Result<Vec<Column>, SceneError> {
+    let known = known_columns::<D>();
+    let mut columns = Vec::new();
+    for (at, field) in fields(start, header) {
+        let error = |message: String| SceneError::at(name, text, at, at + field.len(), message);
+        let Some((_, column)) = known.iter().find(|(known, _)| known == field) else {
+            let error = error(format!(
+                "unknown column \"{}\"",
+                crate::scene::shorten(field)
+            ));
+            if field.parse::<f64>().is_ok() {
+                return Err(error.hint(format!(
+                    "the first line must name the columns: {}, ..",
+                    AXES[..D].join(",")
+                )));
+            }
+            if D == 2 && ["z", "vz"].contains(&field) {
+                return Err(error.hint("this scene has dimension = 2"));
+            }
+            return Err(
+                match nearest(field, known.iter().map(|(name, _)| name.as_str())) {
+                    Some(near) => error.hint(format!("did you mean \"{near}\"?")),
+                    None => error.hint(
+                        "known: x, y, z, vx, vy, vz, volume, mass, J, F11, F12, .., C11, C12, ..",
+                    ),
+                },
+            );
+        };
+        if columns.contains(column) {
+            return Err(error(format!("the column \"{field}\" is there twice")));
+        }
+        columns.push(*column);
+    }
+    // A vector or matrix has all of its columns or none.
+    let group = |column: &Column| match column {
+        Column::Position(_) => 1,
+        Column::Velocity(_) => 2,
+        Column::Gradient(..) => 3,
+        Column::Affine(..) => 4,
+        Column::Volume | Column::Mass | Column::Jacobian => 0,
+    };
+    for (column_name, column) in &known {
+        let of_group = group(column);
+        let wanted =
+            of_group == 1 || (of_group > 1 && columns.iter().any(|other| group(other) == of_group));
+        if wanted && !columns.contains(column) {
+            return Err(SceneError::at(
+                name,
+                text,
+                start,
+                start + header.len(),
+                format!("there is no column \"{column_name}\""),
+            ));
+        }
+    }
+    if columns.contains(&Column::Jacobian) && columns.contains(&Column::Gradient(0, 0)) {
+        return Err(SceneError::at(
+            name,
+            text,
+            start,
+            start + header.len(),
+            "columns J and F11, F12, .. say the same; give one",
+        ));
+    }
+    Ok(columns)
+}
+
+/// Lines with the byte they start at, without their ends.
+struct Lines<'a> {
+    text: &'a str,
+    at: usize,
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = (usize, &'a str);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let rest = self.text.get(self.at..).filter(|rest| !rest.is_empty())?;
+        let start = self.at;
+        let line = rest.split('\n').next().unwrap_or(rest);
+        self.at += line.len() + 1;
+        Some((start, line.strip_suffix('\r').unwrap_or(line)))
+    }
+}
+
+/// Fields of a line with the byte they start at, trimmed.
+fn fields(start: usize, line: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut at = start;
+    line.split(',').map(move |field| {
+        let begin = at + (field.len() - field.trim_start().len());
+        at += field.len() + 1;
+        (begin, field.trim())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn reads_columns_in_any_order() {
+        let text = "# start\nvolume, y,x ,vx,vy\n1e-3,2,1,3,4\r\n\n2e-3,-2,-1,0,0\n";
+        let list = parse_csv::<2>(text, "a.csv").unwrap();
+        assert_eq!(list.position, [[1.0, 2.0], [-1.0, -2.0]]);
+        assert_eq!(list.velocity, [[3.0, 4.0], [0.0, 0.0]]);
+        assert_eq!(list.volume, [1e-3, 2e-3]);
+        assert!(list.mass.is_empty() && list.warnings.is_empty());
+        let list = parse_csv::<2>("x,y,F11,F12,F21,F22\n0,0,1,2,3,4", "a.csv").unwrap();
+        assert_eq!(list.deformation_gradient, [[[1.0, 2.0], [3.0, 4.0]]]);
+        assert_eq!(list.warnings.len(), 1);
+    }
+
+    #[test]
+    fn points_at_what_is_wrong() {
+        let error = |text: &str| {
+            let error = parse_csv::<2>(text, "a.csv").unwrap_err();
+            (error.line, error.column, error.message)
+        };
+        assert_eq!(
+            error("x,y\n1,2\n3,4x\n"),
+            (3, 3, "\"4x\" is not a number".to_owned())
+        );
+        assert_eq!(
+            error("x,y\n1,nan\n"),
+            (2, 3, "NaN is no value for a particle".to_owned())
+        );
+        assert_eq!(
+            error("x,y,mass\n1,2,-3\n"),
+            (2, 5, "-3 must be above 0".to_owned())
+        );
+        assert_eq!(
+            error("x,y\n1,2\n3\n").2,
+            "this line has 1 values, the header names 2"
+        );
+        assert_eq!(
+            error("x,y\n1,2,3\n").2,
+            "this line has 3 values, the header names 2"
+        );
+        assert_eq!(error("x,y,vx\n").2, "there is no column \"vy\"");
+        assert_eq!(error("x,vy\n").2, "there is no column \"y\"");
+        assert_eq!(error("").0, 0);
+    }
+}

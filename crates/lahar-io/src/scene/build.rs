@@ -1,0 +1,175 @@
+//! From a plan to a simulation with its particles.
+
+use super::plan::{Body, Plan, Source, Volume};
+use crate::sampling::{Random, sample};
+use crate::shape::Shape;
+use lahar::{Deformation, ParticleBatch, Setup};
+
+impl<const D: usize> Plan<D> {
+    /// What the simulator is made from.
+    pub(crate) fn setup(&self, isa: lahar::Isa) -> Setup<D> {
+        Setup {
+            dx: self.dx,
+            domain: self.domain.clone(),
+            gravity: self.gravity,
+            kernel: self.kernel,
+            transfer: self.transfer,
+            force: self.force,
+            time_step: self.time_step,
+            materials: self.materials.clone(),
+            isa,
+        }
+    }
+
+    /// The particles of every body; bodies are numbered in the order of the scene.
+    pub(crate) fn batches(&self, seed: u64) -> Vec<ParticleBatch<D>> {
+        self.bodies
+            .iter()
+            .enumerate()
+            .map(|(index, body)| batch(body, index, seed, self.materials[body.material].density))
+            .collect()
+    }
+
+    /// Bodies that share space: (first, second, particles of the second inside the first).
+    pub(crate) fn overlaps(&self, batches: &[ParticleBatch<D>]) -> Vec<(usize, usize, usize)> {
+        let mut found = Vec::new();
+        for (i, body) in self.bodies.iter().enumerate() {
+            let Source::Shape { region, .. } = &body.source else {
+                continue;
+            };
+            for (j, batch) in batches.iter().enumerate() {
+                let is_later = j > i || matches!(self.bodies[j].source, Source::List(_));
+                let common = region.bounds().intersection(&self.bodies[j].bounds());
+                if !is_later || (0..D).any(|axis| common.side(axis) <= 0.0) {
+                    continue;
+                }
+                let inside = batch.position.iter().filter(|p| region.contains(p)).count();
+                if inside > 0 {
+                    found.push((i, j, inside));
+                }
+            }
+        }
+        found
+    }
+}
+
+fn batch<const D: usize>(
+    body: &Body<D>,
+    index: usize,
+    seed: u64,
+    density: f64,
+) -> ParticleBatch<D> {
+    let mut batch = ParticleBatch {
+        material: body.material,
+        body: index as u32,
+        ..ParticleBatch::default()
+    };
+    match &body.source {
+        Source::Shape {
+            region,
+            spacing,
+            count,
+            sampling,
+        } => {
+            batch.position = sample(
+                region,
+                *spacing,
+                *count,
+                *sampling,
+                &mut Random::new(seed, index as u64),
+            );
+            batch.volume = vec![region.volume() / batch.position.len().max(1) as f64];
+        }
+        Source::List(list) => {
+            batch.position = list.position.clone();
+            batch.velocity = list.velocity.clone();
+            batch.mass = list.mass.clone();
+            batch.volume = if list.volume.is_empty() {
+                list.mass.iter().map(|mass| mass / density).collect()
+            } else {
+                list.volume.clone()
+            };
+            batch.affine = list.affine.clone();
+            batch.deformation = if !list.deformation_gradient.is_empty() {
+                Deformation::Gradient(list.deformation_gradient.clone())
+            } else if !list.jacobian.is_empty() {
+                Deformation::Jacobian(list.jacobian.clone())
+            } else {
+                Deformation::Rest
+            };
+        }
+    }
+    match body.volume {
+        Volume::Source => {}
+        Volume::Body(volume) => batch.volume = vec![volume / batch.position.len().max(1) as f64],
+        Volume::Particle(volume) => batch.volume = vec![volume],
+    }
+    add_motion(&mut batch, body);
+    batch
+}
+
+/// Adds v + G (x − centre of mass) to the velocities, and G to the affine matrices.
+fn add_motion<const D: usize>(batch: &mut ParticleBatch<D>, body: &Body<D>) {
+    let turns = body.gradient.iter().flatten().any(|g| *g != 0.0);
+    if !turns {
+        if batch.velocity.is_empty() {
+            batch.velocity = vec![body.velocity];
+        } else {
+            for v in &mut batch.velocity {
+                *v = core::array::from_fn(|i| v[i] + body.velocity[i]);
+            }
+        }
+        return;
+    }
+    let center = center_of_mass(batch);
+    let count = batch.position.len();
+    batch.velocity.resize(count, [0.0; D]);
+    batch.affine.resize(count, [[0.0; D]; D]);
+    for ((x, v), c) in batch
+        .position
+        .iter()
+        .zip(&mut batch.velocity)
+        .zip(&mut batch.affine)
+    {
+        for i in 0..D {
+            v[i] += body.velocity[i]
+                + (0..D)
+                    .map(|j| body.gradient[i][j] * (x[j] - center[j]))
+                    .sum::<f64>();
+            for j in 0..D {
+                c[i][j] += body.gradient[i][j];
+            }
+        }
+    }
+}
+
+fn center_of_mass<const D: usize>(batch: &ParticleBatch<D>) -> [f64; D] {
+    // Weights need not be masses: all particles of a body have one density.
+    let weights = if batch.mass.is_empty() {
+        &batch.volume
+    } else {
+        &batch.mass
+    };
+    let weight = |i: usize| {
+        if weights.len() == batch.position.len() {
+            weights[i]
+        } else {
+            1.0
+        }
+    };
+    // Summed from the middle of the bounds, so that nothing is lost far from the origin.
+    let bounds = Shape::Polygon {
+        points: batch.position.clone(),
+    }
+    .bounds();
+    let middle: [f64; D] = core::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]));
+    let mut total = 0.0;
+    let mut sum = [0.0; D];
+    for (i, x) in batch.position.iter().enumerate() {
+        total += weight(i);
+        for k in 0..D {
+            sum[k] += weight(i) * (x[k] - middle[k]);
+        }
+    }
+    core::array::from_fn(|k| middle[k] + sum[k] / total)
+}

@@ -1,0 +1,562 @@
+//! A document against the table of keys: what is unknown, missing or of the wrong kind is found
+//! here, and what is absent and has a default is filled in.
+
+use super::document::{Entry, Node, Sources, Span, Table, Value, literal, literal_table};
+use super::keys::{Key, Kind, MODELS, MODULI, SCENE, SECTIONS, Section, WhenAbsent, model_section};
+use super::preset;
+use crate::error::{SceneError, nearest};
+
+/// Checks and completes the scene `root`; returns its dimension.
+pub(crate) fn check(sources: &Sources, root: &mut Table) -> Result<usize, SceneError> {
+    if root.entries.is_empty() {
+        let error = sources.error(Span::default(), "the scene is empty");
+        return Err(error.hint(
+            "a scene needs at least dx, a material and a body; `lahar show dam-break` shows one",
+        ));
+    }
+    let dimension = match root.get("dimension") {
+        None => 2,
+        Some(node) => match node.value {
+            Value::Integer(2) => 2,
+            Value::Integer(3) => 3,
+            _ => {
+                return Err(sources.error(
+                    node.span,
+                    format!(
+                        "\"dimension\" must be 2 or 3, found {}",
+                        node.value.describe()
+                    ),
+                ));
+            }
+        },
+    };
+    let check = Check { sources, dimension };
+    check.section(root, &SCENE, Span::default())?;
+    Ok(dimension)
+}
+
+/// The keys that `root` gives, as (section, key), before defaults are filled in.
+pub(crate) fn used_keys(root: &Table) -> Vec<(&'static str, String)> {
+    fn visit(table: &Table, section: &'static Section, used: &mut Vec<(&'static str, String)>) {
+        for entry in &table.entries {
+            used.push((section.name, entry.key.clone()));
+            if let Some(key) = section.key(&entry.key) {
+                visit_kind(&entry.node, key.kind, used);
+            }
+        }
+    }
+    fn visit_kind(node: &Node, kind: Kind, used: &mut Vec<(&'static str, String)>) {
+        match (kind, &node.value) {
+            (Kind::Table(section), Value::Table(table)) => visit(table, section, used),
+            (Kind::Tables(section), Value::List(list)) => {
+                for node in list {
+                    visit_kind(node, Kind::Table(section), used);
+                }
+            }
+            (Kind::Materials, Value::Table(table)) => {
+                for entry in &table.entries {
+                    let Value::Table(material) = &entry.node.value else {
+                        continue;
+                    };
+                    if let Some(section) = model_of(material).and_then(model_section) {
+                        visit(material, section, used);
+                    }
+                }
+            }
+            (Kind::OneOf(kinds), _) => {
+                if let Some(kind) = kinds.iter().find(|kind| accepts(**kind, &node.value)) {
+                    visit_kind(node, *kind, used);
+                }
+            }
+            _ => {}
+        }
+    }
+    let mut used = Vec::new();
+    visit(root, &SCENE, &mut used);
+    used
+}
+
+/// The model that a material names, itself or by its preset.
+fn model_of(material: &Table) -> Option<&str> {
+    let text = |key: &str| match &material.get(key)?.value {
+        Value::Text(text) => Some(text.as_str()),
+        _ => None,
+    };
+    text("model").or_else(|| {
+        let keys = preset::find(text("preset")?)?.keys;
+        MODELS
+            .iter()
+            .copied()
+            .find(|model| keys.starts_with(&format!("model = \"{model}\"")))
+    })
+}
+
+struct Check<'a> {
+    sources: &'a Sources,
+    dimension: usize,
+}
+
+impl Check<'_> {
+    /// Checks `table`, which stands at `span`, and fills in the defaults.
+    fn section(
+        &self,
+        table: &mut Table,
+        section: &'static Section,
+        span: Span,
+    ) -> Result<(), SceneError> {
+        for entry in &mut table.entries {
+            let key = self.known(entry, section)?;
+            if key.only_3d && self.dimension == 2 {
+                let error = self
+                    .sources
+                    .error(entry.key_span, format!("\"{}\" is for 3D only", entry.key));
+                return Err(error.hint("this scene has dimension = 2"));
+            }
+            self.kind(&mut entry.node, entry.key_span, key.name, key.kind)?;
+        }
+        for key in section.keys() {
+            if table.get(key.name).is_some() || (key.only_3d && self.dimension == 2) {
+                continue;
+            }
+            let text = match key.default {
+                WhenAbsent::Required => return Err(self.missing(key, section, span)),
+                WhenAbsent::Value(text) => text,
+                WhenAbsent::ByDimension(two, three) => {
+                    if self.dimension == 2 {
+                        two
+                    } else {
+                        three
+                    }
+                }
+                WhenAbsent::Words(_) => continue,
+            };
+            if let Some(mut node) = literal(text, span) {
+                self.kind(&mut node, span, key.name, key.kind)?;
+                table.add(key.name, node.value, span);
+            }
+        }
+        Ok(())
+    }
+
+    fn missing(&self, key: &Key, section: &Section, span: Span) -> SceneError {
+        let place = if section.name == SCENE.name {
+            "the scene".to_owned()
+        } else {
+            format!("this {}", section.name)
+        };
+        let error = self
+            .sources
+            .error(span, format!("{place} has no \"{}\"", key.name));
+        match key.kind {
+            Kind::Materials => {
+                error.hint("add one, like: [materials.water] with preset = \"water\"")
+            }
+            Kind::Tables(_) => error.hint("add one: [[bodies]] with a material and a shape"),
+            kind => error.hint(format!(
+                "\"{}\" is {}{}: {}",
+                key.name,
+                kind.words(self.dimension),
+                unit(key),
+                key.about
+            )),
+        }
+    }
+
+    /// The line of the table for an entry.
+    fn known(&self, entry: &Entry, section: &'static Section) -> Result<&'static Key, SceneError> {
+        if let Some(key) = section.key(&entry.key) {
+            if matches!(key.kind, Kind::Later) {
+                let error = self.sources.error(
+                    entry.key_span,
+                    format!(
+                        "\"{}\" is not available yet in this version of lahar",
+                        entry.key
+                    ),
+                );
+                return Err(error.hint("remove it; the name is reserved"));
+            }
+            return Ok(key);
+        }
+        let error = self.sources.error(
+            entry.key_span,
+            format!("unknown key \"{}\"", super::document::shorten(&entry.key)),
+        );
+        let available = || {
+            section.keys().filter(|key| {
+                !matches!(key.kind, Kind::Later) && !(key.only_3d && self.dimension == 2)
+            })
+        };
+        if let Some(near) = nearest(&entry.key, available().map(|key| key.name)) {
+            return Err(error.hint(format!("did you mean \"{near}\"?")));
+        }
+        if let Some(other) = SECTIONS.iter().find(|other| {
+            other
+                .key(&entry.key)
+                .is_some_and(|key| !matches!(key.kind, Kind::Later))
+        }) {
+            return Err(error.hint(format!("\"{}\" belongs {}", entry.key, place(other))));
+        }
+        let names: Vec<&str> = available().map(|key| key.name).collect();
+        Err(error.hint(format!("known here: {}", names.join(", "))))
+    }
+
+    /// Checks one value; `name` is its key, at `key_span`.
+    fn kind(
+        &self,
+        node: &mut Node,
+        key_span: Span,
+        name: &str,
+        kind: Kind,
+    ) -> Result<(), SceneError> {
+        let span = node.span;
+        let wrong = |found: &Value| {
+            let error = self.sources.error(
+                span,
+                format!(
+                    "\"{name}\" must be {}, found {}",
+                    kind.words(self.dimension),
+                    found.describe()
+                ),
+            );
+            match found {
+                Value::Text(text)
+                    if matches!(kind, Kind::Number(_) | Kind::Integer(..))
+                        && text.trim().parse::<f64>().is_ok() =>
+                {
+                    error.hint("write it without quotes")
+                }
+                _ => error,
+            }
+        };
+        match (kind, &mut node.value) {
+            (Kind::Text, Value::Text(_)) => Ok(()),
+            (Kind::Color, Value::Text(text)) if color(text).is_some() => Ok(()),
+            (Kind::Number(bound), value) => match value.as_number() {
+                Some(number) if bound.holds(number) => Ok(()),
+                _ => Err(wrong(value)),
+            },
+            (Kind::Integer(low, high), Value::Integer(number)) if (low..=high).contains(number) => {
+                Ok(())
+            }
+            (Kind::Integer(low, high), Value::Number(number))
+                if number.fract() == 0.0 && *number >= low as f64 && *number <= high as f64 =>
+            {
+                node.value = Value::Integer(*number as i64);
+                Ok(())
+            }
+            (Kind::Vector, Value::List(list)) => {
+                self.numbers(list, span, name, kind, self.dimension, true)
+            }
+            (Kind::Rotation, value) if self.dimension == 2 => match value.as_number() {
+                Some(number) if number.is_finite() => Ok(()),
+                _ => Err(wrong(value)),
+            },
+            (Kind::Rotation, Value::List(list)) => self.numbers(list, span, name, kind, 3, true),
+            (Kind::Matrix, Value::List(rows)) if rows.len() == self.dimension => {
+                self.rows(rows, name, kind)
+            }
+            (Kind::Points, Value::List(points)) => self.rows(points, name, kind),
+            (Kind::Interval, Value::List(list)) => {
+                self.numbers(list, span, name, kind, 2, false)?;
+                match (list[0].value.as_number(), list[1].value.as_number()) {
+                    (Some(low), Some(high)) if low <= high && low >= 0.0 => Ok(()),
+                    _ => Err(self.sources.error(
+                        span,
+                        format!("\"{name}\" must be two numbers, 0 or above, the lower first"),
+                    )),
+                }
+            }
+            (Kind::Size, Value::List(list)) => {
+                let fits = |node: &Node| matches!(node.value, Value::Integer(1..=16384));
+                if list.len() == 2 && list.iter().all(fits) {
+                    Ok(())
+                } else {
+                    Err(wrong(&node.value))
+                }
+            }
+            (Kind::Word(words), Value::Text(text)) => self.word(text, words, span, name),
+            (Kind::Words(words), Value::List(list)) => {
+                list.iter().try_for_each(|item| match &item.value {
+                    Value::Text(text) => self.word(text, words, item.span, name),
+                    other => Err(self.sources.error(
+                        item.span,
+                        format!(
+                            "\"{name}\" must be {}, found {}",
+                            kind.words(self.dimension),
+                            other.describe()
+                        ),
+                    )),
+                })
+            }
+            (Kind::Fields, Value::List(list)) => {
+                let names: Vec<&str> = lahar::particles::FIELDS
+                    .iter()
+                    .map(|field| field.name)
+                    .collect();
+                list.iter().try_for_each(|item| match &item.value {
+                    Value::Text(text) => self.word(text, &names, item.span, name),
+                    other => Err(self.sources.error(
+                        item.span,
+                        format!(
+                            "\"{name}\" must be {}, found {}",
+                            kind.words(self.dimension),
+                            other.describe()
+                        ),
+                    )),
+                })
+            }
+            (Kind::OneOf(kinds), value) => match kinds.iter().find(|kind| accepts(**kind, value)) {
+                Some(one) => self
+                    .kind(node, key_span, name, *one)
+                    .map_err(|error| match one {
+                        Kind::Table(_) => error,
+                        _ => SceneError {
+                            message: wrong(&node.value).message,
+                            ..error
+                        },
+                    }),
+                None => Err(wrong(value)),
+            },
+            (Kind::Table(section), Value::Table(table)) => self.section(table, section, key_span),
+            (Kind::Tables(section), Value::List(list)) => {
+                if list.is_empty() {
+                    return Err(self.sources.error(span, format!("\"{name}\" is empty")));
+                }
+                list.iter_mut()
+                    .try_for_each(|item| self.kind(item, item.span, name, Kind::Table(section)))
+            }
+            (Kind::Tables(_), Value::Table(_)) => Err(self
+                .sources
+                .error(key_span, format!("\"{name}\" must be a list of tables"))
+                .hint(format!("write [[{name}]] with two brackets"))),
+            (Kind::Materials, Value::Table(table)) => self.materials(table, span),
+            (_, value) => {
+                let error = wrong(value);
+                Err(match (kind, value) {
+                    (Kind::Vector, Value::Text(_)) => {
+                        error.hint("expressions are not available yet in this version of lahar")
+                    }
+                    _ => error,
+                })
+            }
+        }
+    }
+
+    /// `count` numbers; expressions, which will come, are named as such.
+    fn numbers(
+        &self,
+        list: &[Node],
+        span: Span,
+        name: &str,
+        kind: Kind,
+        count: usize,
+        finite: bool,
+    ) -> Result<(), SceneError> {
+        for item in list {
+            let bad = |found: String| {
+                self.sources.error(
+                    item.span,
+                    format!(
+                        "\"{name}\" must be {}, found {found}",
+                        kind.words(self.dimension)
+                    ),
+                )
+            };
+            match (&item.value, item.value.as_number()) {
+                (_, Some(number)) if number.is_nan() || (finite && !number.is_finite()) => {
+                    return Err(bad(format!("the number {number}")));
+                }
+                (_, Some(_)) => {}
+                (Value::Text(_), _) => {
+                    return Err(bad(item.value.describe())
+                        .hint("expressions are not available yet in this version of lahar"));
+                }
+                _ => return Err(bad(item.value.describe())),
+            }
+        }
+        if list.len() == count {
+            return Ok(());
+        }
+        let found = Value::List(list.to_vec()).describe();
+        let error = self.sources.error(
+            span,
+            format!(
+                "\"{name}\" must be {}, found {found}",
+                kind.words(self.dimension)
+            ),
+        );
+        Err(
+            if (list.len() == 2 || list.len() == 3)
+                && count == self.dimension
+                && !matches!(kind, Kind::Interval)
+            {
+                error.hint(format!("this scene has dimension = {}", self.dimension))
+            } else {
+                error
+            },
+        )
+    }
+
+    fn rows(&self, rows: &[Node], name: &str, kind: Kind) -> Result<(), SceneError> {
+        rows.iter().try_for_each(|row| match &row.value {
+            Value::List(list) => self.numbers(list, row.span, name, kind, self.dimension, true),
+            other => Err(self.sources.error(
+                row.span,
+                format!(
+                    "\"{name}\" must be {}, found {}",
+                    kind.words(self.dimension),
+                    other.describe()
+                ),
+            )),
+        })
+    }
+
+    fn word(&self, text: &str, words: &[&str], span: Span, name: &str) -> Result<(), SceneError> {
+        if words.contains(&text) {
+            return Ok(());
+        }
+        let error = self.sources.error(
+            span,
+            format!("\"{}\" is not a {name}", super::document::shorten(text)),
+        );
+        Err(match nearest(text, words.iter().copied()) {
+            Some(near) => error.hint(format!("did you mean \"{near}\"?")),
+            None => error.hint(format!("choose from: {}", words.join(", "))),
+        })
+    }
+
+    fn materials(&self, materials: &mut Table, span: Span) -> Result<(), SceneError> {
+        if materials.entries.is_empty() {
+            return Err(self
+                .sources
+                .error(span, "there is no material")
+                .hint("add one, like: [materials.water] with preset = \"water\""));
+        }
+        for entry in &mut materials.entries {
+            let found = entry.node.value.describe();
+            let Value::Table(material) = &mut entry.node.value else {
+                let error = self.sources.error(
+                    entry.node.span,
+                    format!("a material must be a table, found {found}"),
+                );
+                return Err(error.hint("materials have names, like: [materials.water]"));
+            };
+            self.material(material, entry.key_span)?;
+        }
+        Ok(())
+    }
+
+    /// Lays the preset under the material and checks it by its model.
+    fn material(&self, material: &mut Table, span: Span) -> Result<(), SceneError> {
+        let mut model = None;
+        for name in ["model", "preset"] {
+            if let Some(node) = material.get(name) {
+                match (&node.value, super::keys::NONE.key(name).map(|key| key.kind)) {
+                    (Value::Text(text), Some(Kind::Word(words))) => {
+                        self.word(text, words, node.span, name)?
+                    }
+                    (other, _) => {
+                        return Err(self.sources.error(
+                            node.span,
+                            format!(
+                                "\"{name}\" must be text in quotes, found {}",
+                                other.describe()
+                            ),
+                        ));
+                    }
+                }
+            }
+        }
+        if let Some(Node {
+            value: Value::Text(text),
+            span: preset_span,
+        }) = material.get("preset").cloned()
+        {
+            let base = preset::find(&text)
+                .and_then(|preset| literal_table(preset.keys, preset_span))
+                .unwrap_or_default();
+            let same = |key: &str| match (
+                material.get(key).map(|node| &node.value),
+                base.get(key).map(|node| &node.value),
+            ) {
+                (Some(Value::Text(a)), Some(Value::Text(b))) => a == b,
+                (given, _) => given.is_none(),
+            };
+            if !same("model") {
+                return Err(self
+                    .sources
+                    .error(
+                        preset_span,
+                        format!("the preset \"{text}\" has another model than this material"),
+                    )
+                    .hint("remove model, or choose another preset"));
+            }
+            let replaced = replaced_moduli(material, &base);
+            for entry in base.entries {
+                if material.get(&entry.key).is_none() && !replaced.contains(&entry.key.as_str()) {
+                    material.entries.push(entry);
+                }
+            }
+        }
+        if let Some(text) = model_of(material) {
+            model = model_section(text);
+        }
+        match model {
+            Some(section) => self.section(material, section, span),
+            None => Err(self
+                .sources
+                .error(span, "this material has no \"model\"")
+                .hint(format!(
+                    "choose from: {}; or give a preset: {}",
+                    MODELS.join(", "),
+                    preset::NAMES.join(", ")
+                ))),
+        }
+    }
+}
+
+/// Moduli of a preset that the material says by another pair.
+fn replaced_moduli(material: &Table, base: &Table) -> Vec<&'static str> {
+    let given = |key: &&str| material.get(key).is_some() && base.get(key).is_none();
+    if MODULI.as_flattened().iter().any(given) {
+        MODULI.as_flattened().to_vec()
+    } else {
+        Vec::new()
+    }
+}
+
+/// Whether a value has the TOML type of a kind.
+fn accepts(kind: Kind, value: &Value) -> bool {
+    match kind {
+        Kind::Text | Kind::Color | Kind::Word(_) => matches!(value, Value::Text(_)),
+        Kind::Number(_) => matches!(value, Value::Number(_) | Value::Integer(_)),
+        Kind::Integer(..) => matches!(value, Value::Integer(_)),
+        Kind::Table(_) | Kind::Materials => matches!(value, Value::Table(_)),
+        _ => matches!(value, Value::List(_)),
+    }
+}
+
+fn unit(key: &Key) -> String {
+    if key.unit.is_empty() {
+        String::new()
+    } else {
+        format!(" [{}]", key.unit)
+    }
+}
+
+fn place(section: &Section) -> String {
+    if section.name == SCENE.name {
+        section.header.to_owned()
+    } else {
+        format!("in {}", section.header)
+    }
+}
+
+/// The colour "#rrggbb".
+pub(crate) fn color(text: &str) -> Option<[u8; 3]> {
+    let hex = text
+        .strip_prefix('#')
+        .filter(|hex| hex.len() == 6 && hex.is_ascii())?;
+    let part = |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).ok();
+    Some([part(0)?, part(2)?, part(4)?])
+}

@@ -1,0 +1,463 @@
+//! A scene as a tree of TOML values, each with its place, so that whatever is found wrong with it
+//! later can be pointed at; and what `--set` does to the tree.
+
+use crate::error::{SceneError, nearest};
+use toml::de::{DeTable, DeValue};
+
+/// Texts that values come from: the scene first, then the overrides.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sources(Vec<Source>);
+
+#[derive(Clone, Debug)]
+struct Source {
+    name: String,
+    text: String,
+}
+
+/// Bytes of one of the [`Sources`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Span {
+    source: usize,
+    start: usize,
+    end: usize,
+}
+
+impl Sources {
+    /// An error that points at `span`.
+    pub(crate) fn error(&self, span: Span, message: impl Into<String>) -> SceneError {
+        match self.0.get(span.source) {
+            Some(source) => {
+                SceneError::at(&*source.name, &source.text, span.start, span.end, message)
+            }
+            None => SceneError::of_file("", message),
+        }
+    }
+
+    fn add(&mut self, name: String, text: String) -> usize {
+        self.0.push(Source { name, text });
+        self.0.len() - 1
+    }
+}
+
+/// A value and its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Node {
+    pub(crate) value: Value,
+    pub(crate) span: Span,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Value {
+    Text(String),
+    Number(f64),
+    /// A whole number; too large ones are [`Value::Number`].
+    Integer(i64),
+    Flag(bool),
+    List(Vec<Node>),
+    Table(Table),
+    /// A date or a time, of no use here.
+    Date,
+}
+
+impl Value {
+    /// What it is, for messages.
+    pub(crate) fn describe(&self) -> String {
+        match self {
+            Self::Text(text) => format!("the text \"{}\"", shorten(text)),
+            Self::Number(number) => format!("the number {number}"),
+            Self::Integer(number) => format!("the number {number}"),
+            Self::Flag(flag) => format!("{flag}"),
+            Self::List(list) => match list.len() {
+                1 => "a list of 1".to_owned(),
+                n => format!("a list of {n}"),
+            },
+            Self::Table(_) => "a table".to_owned(),
+            Self::Date => "a date".to_owned(),
+        }
+    }
+
+    pub(crate) fn as_number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Integer(number) => Some(*number as f64),
+            _ => None,
+        }
+    }
+}
+
+/// At most forty characters of a text, on one line.
+pub(crate) fn shorten(text: &str) -> String {
+    let clean: String = text
+        .chars()
+        .take(40)
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .collect();
+    if text.chars().count() > 40 {
+        clean + "..."
+    } else {
+        clean
+    }
+}
+
+/// Keys and values, in the order of the file.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Table {
+    pub(crate) entries: Vec<Entry>,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    /// Where the key stands.
+    pub(crate) key_span: Span,
+    pub(crate) node: Node,
+}
+
+impl Table {
+    pub(crate) fn entry(&self, key: &str) -> Option<&Entry> {
+        self.entries.iter().find(|entry| entry.key == key)
+    }
+
+    pub(crate) fn get(&self, key: &str) -> Option<&Node> {
+        self.entry(key).map(|entry| &entry.node)
+    }
+
+    fn get_mut(&mut self, key: &str) -> Option<&mut Node> {
+        self.entries
+            .iter_mut()
+            .find(|entry| entry.key == key)
+            .map(|entry| &mut entry.node)
+    }
+
+    /// Adds a key that is not there yet, all of it at `span`.
+    pub(crate) fn add(&mut self, key: &str, value: Value, span: Span) {
+        self.entries.push(Entry {
+            key: key.to_owned(),
+            key_span: span,
+            node: Node { value, span },
+        });
+    }
+}
+
+/// A parsed scene, overrides applied.
+#[derive(Clone, Debug)]
+pub(crate) struct Document {
+    pub(crate) sources: Sources,
+    pub(crate) root: Table,
+}
+
+impl Document {
+    /// Reads `text` and lays the overrides over it.
+    pub(crate) fn parse(
+        text: &str,
+        name: &str,
+        overrides: &[(String, String)],
+    ) -> Result<Self, SceneError> {
+        let mut sources = Sources::default();
+        sources.add(name.to_owned(), text.to_owned());
+        let table = DeTable::parse(text).map_err(|error| syntax(&sources, 0, 0, &error))?;
+        let mut document = Self {
+            root: convert_table(table.get_ref(), 0, 0),
+            sources,
+        };
+        for (key, value) in overrides {
+            document.set(key, value)?;
+        }
+        Ok(document)
+    }
+
+    /// Applies one `--set key=value`.
+    fn set(&mut self, key: &str, value: &str) -> Result<(), SceneError> {
+        let source = self
+            .sources
+            .add("--set".to_owned(), format!("{key}={value}"));
+        let path = self.parse_path(key, source)?;
+        let offset = key.len() + 1;
+        let node = match DeValue::parse(value) {
+            Ok(parsed) => convert(&parsed, source, offset),
+            Err(_) if is_bare_word(value) => Node {
+                value: Value::Text(value.trim().to_owned()),
+                span: Span {
+                    source,
+                    start: offset,
+                    end: offset + value.len(),
+                },
+            },
+            Err(error) => return Err(syntax(&self.sources, source, offset, &error)),
+        };
+        let sources = &self.sources;
+        set_in_table(sources, &mut self.root, &path, node)
+    }
+
+    fn parse_path(&self, key: &str, source: usize) -> Result<Vec<(String, Span)>, SceneError> {
+        let whole = Span {
+            source,
+            start: 0,
+            end: key.len(),
+        };
+        let bad = || {
+            self.sources
+                .error(whole, format!("\"{}\" is not a key", shorten(key)))
+                .hint("write keys as in --set dx=0.01 or --set bodies.column.velocity=[1,0]")
+        };
+        if key.contains(['\n', '=', '#']) {
+            return Err(bad());
+        }
+        let line = format!("{key}=0");
+        let parsed = DeTable::parse(&line).map_err(|_| bad())?;
+        let mut table = convert_table(parsed.get_ref(), source, 0);
+        let mut path = Vec::new();
+        while let Some(entry) = table.entries.pop() {
+            path.push((entry.key, entry.key_span));
+            match entry.node.value {
+                Value::Table(inner) => table = inner,
+                _ => return Ok(path),
+            }
+        }
+        Err(bad())
+    }
+
+    /// The place of a dotted key ("materials.water.density"), or of the longest part of it that is
+    /// in the scene.
+    pub(crate) fn locate(&self, key: &str) -> Option<Span> {
+        let mut span = None;
+        let mut table = &self.root;
+        let mut parts = key.split('.').peekable();
+        while let Some(part) = parts.next() {
+            let Some(entry) = table.entry(part) else {
+                break;
+            };
+            span = Some(if parts.peek().is_none() {
+                entry.node.span
+            } else {
+                entry.key_span
+            });
+            let inner = match &entry.node.value {
+                Value::Table(inner) => Some(inner),
+                Value::List(list) => {
+                    let Some(name) = parts.next() else { break };
+                    element_index(list, name).and_then(|at| match &list[at].value {
+                        Value::Table(inner) => {
+                            span = Some(list[at].span);
+                            Some(inner)
+                        }
+                        _ => None,
+                    })
+                }
+                _ => None,
+            };
+            let Some(inner) = inner else { break };
+            table = inner;
+        }
+        span
+    }
+}
+
+/// Puts `node` at `path`, making tables on the way.
+fn set_in_table(
+    sources: &Sources,
+    table: &mut Table,
+    path: &[(String, Span)],
+    node: Node,
+) -> Result<(), SceneError> {
+    let Some(((key, key_span), rest)) = path.split_first() else {
+        return Ok(());
+    };
+    if rest.is_empty() {
+        match table.entries.iter_mut().find(|entry| &entry.key == key) {
+            Some(entry) => {
+                entry.key_span = *key_span;
+                entry.node = node;
+            }
+            None => table.entries.push(Entry {
+                key: key.clone(),
+                key_span: *key_span,
+                node,
+            }),
+        }
+        return Ok(());
+    }
+    if table.get(key).is_none() {
+        table.add(key, Value::Table(Table::default()), *key_span);
+    }
+    match table.get_mut(key).map(|node| &mut node.value) {
+        Some(Value::Table(inner)) => set_in_table(sources, inner, rest, node),
+        Some(Value::List(list)) => {
+            let (name, name_span) = &rest[0];
+            match element_index(list, name) {
+                Some(at) if rest.len() == 1 => {
+                    list[at] = node;
+                    Ok(())
+                }
+                Some(at) => match &mut list[at].value {
+                    Value::Table(inner) => set_in_table(sources, inner, &rest[1..], node),
+                    other => Err(sources.error(
+                        *name_span,
+                        format!("{key}.{name} is {}, and has no keys", other.describe()),
+                    )),
+                },
+                None => {
+                    let names: Vec<&str> = list.iter().filter_map(element_name).collect();
+                    let error =
+                        sources.error(*name_span, format!("there is no \"{name}\" in {key}"));
+                    Err(match nearest(name, names.iter().copied()) {
+                        Some(near) => error.hint(format!("did you mean \"{near}\"?")),
+                        None if names.is_empty() => error.hint(format!(
+                            "give its number, from 0 to {}",
+                            list.len().saturating_sub(1)
+                        )),
+                        None => error.hint(format!("there are: {}", names.join(", "))),
+                    })
+                }
+            }
+        }
+        Some(other) => {
+            let found = other.describe();
+            Err(sources.error(
+                *key_span,
+                format!("\"{key}\" is {found} in the scene, and has no keys"),
+            ))
+        }
+        None => Ok(()),
+    }
+}
+
+/// An element of a list of tables by its name or number.
+fn element_index(list: &[Node], name: &str) -> Option<usize> {
+    list.iter()
+        .position(|node| element_name(node) == Some(name))
+        .or_else(|| name.parse().ok().filter(|&at: &usize| at < list.len()))
+}
+
+fn element_name(node: &Node) -> Option<&str> {
+    match &node.value {
+        Value::Table(table) => match &table.get("name")?.value {
+            Value::Text(name) => Some(name),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// A value of `--set` that needs no quotes: a word, a path.
+fn is_bare_word(value: &str) -> bool {
+    let value = value.trim();
+    value.starts_with(|c: char| c.is_alphabetic() || c == '/' || c == '.')
+        && value
+            .chars()
+            .all(|c| c.is_alphanumeric() || " _-./".contains(c))
+}
+
+/// A value written in TOML by this crate itself: defaults and presets. `None`: not TOML.
+pub(crate) fn literal(text: &str, span: Span) -> Option<Node> {
+    let mut node = convert(&DeValue::parse(text).ok()?, 0, 0);
+    place(&mut node, span);
+    Some(node)
+}
+
+/// A table written in TOML by this crate itself, all of it at `span`.
+pub(crate) fn literal_table(text: &str, span: Span) -> Option<Table> {
+    let mut table = convert_table(DeTable::parse(text).ok()?.get_ref(), 0, 0);
+    for entry in &mut table.entries {
+        entry.key_span = span;
+        place(&mut entry.node, span);
+    }
+    Some(table)
+}
+
+fn place(node: &mut Node, span: Span) {
+    node.span = span;
+    match &mut node.value {
+        Value::List(list) => list.iter_mut().for_each(|node| place(node, span)),
+        Value::Table(table) => {
+            for entry in &mut table.entries {
+                entry.key_span = span;
+                place(&mut entry.node, span);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn syntax(sources: &Sources, source: usize, offset: usize, error: &toml::de::Error) -> SceneError {
+    let range = error.span().unwrap_or(0..0);
+    let span = Span {
+        source,
+        start: range.start + offset,
+        end: range.end + offset,
+    };
+    sources.error(
+        span,
+        format!(
+            "not TOML: {}",
+            error.message().lines().collect::<Vec<_>>().join("; ")
+        ),
+    )
+}
+
+fn convert(node: &toml::Spanned<DeValue<'_>>, source: usize, offset: usize) -> Node {
+    let range = node.span();
+    let value = match node.get_ref() {
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Integer(number) => match i64::from_str_radix(number.as_str(), number.radix()) {
+            Ok(number) => Value::Integer(number),
+            Err(_) => Value::Number(number.as_str().parse().unwrap_or(f64::INFINITY)),
+        },
+        DeValue::Float(number) => Value::Number(number.as_str().parse().unwrap_or(f64::NAN)),
+        DeValue::Boolean(flag) => Value::Flag(*flag),
+        DeValue::Datetime(_) => Value::Date,
+        DeValue::Array(list) => Value::List(
+            list.iter()
+                .map(|node| convert(node, source, offset))
+                .collect(),
+        ),
+        DeValue::Table(table) => Value::Table(convert_table(table, source, offset)),
+    };
+    Node {
+        value,
+        span: Span {
+            source,
+            start: range.start + offset,
+            end: range.end + offset,
+        },
+    }
+}
+
+fn convert_table(table: &DeTable<'_>, source: usize, offset: usize) -> Table {
+    let mut entries: Vec<Entry> = table
+        .iter()
+        .map(|(key, node)| Entry {
+            key: key.get_ref().to_string(),
+            key_span: Span {
+                source,
+                start: key.span().start + offset,
+                end: key.span().end + offset,
+            },
+            node: convert(node, source, offset),
+        })
+        .collect();
+    entries.sort_by_key(|entry| entry.key_span);
+    Table { entries }
+}
+
+/// The tree as JSON; what JSON has no number for is spelled out.
+pub(crate) fn json(node: &Node) -> serde_json::Value {
+    match &node.value {
+        Value::Text(text) => text.clone().into(),
+        Value::Number(number) if number.is_finite() => (*number).into(),
+        Value::Number(number) => number.to_string().into(),
+        Value::Integer(number) => (*number).into(),
+        Value::Flag(flag) => (*flag).into(),
+        Value::List(list) => list.iter().map(json).collect(),
+        Value::Table(table) => json_table(table),
+        Value::Date => serde_json::Value::Null,
+    }
+}
+
+pub(crate) fn json_table(table: &Table) -> serde_json::Value {
+    table
+        .entries
+        .iter()
+        .map(|entry| (entry.key.clone(), json(&entry.node)))
+        .collect()
+}

@@ -1,0 +1,1064 @@
+//! The one table of keys: the reader checks scenes by it and takes the defaults from it; the JSON
+//! schema and the tables of docs/scene-format.md are made from it.
+
+/// A table of a scene file.
+#[derive(Debug)]
+pub(crate) struct Section {
+    /// As the documentation calls it: "scene", "domain", "material: fluid".
+    pub(crate) name: &'static str,
+    /// How it is written: "[domain]".
+    pub(crate) header: &'static str,
+    /// Its keys, in the order of the documentation.
+    pub(crate) keys: &'static [&'static [Key]],
+}
+
+impl Section {
+    pub(crate) fn keys(&self) -> impl Iterator<Item = &'static Key> {
+        self.keys.iter().flat_map(|keys| keys.iter())
+    }
+
+    pub(crate) fn key(&self, name: &str) -> Option<&'static Key> {
+        self.keys().find(|key| key.name == name)
+    }
+}
+
+/// One key.
+#[derive(Debug)]
+pub(crate) struct Key {
+    pub(crate) name: &'static str,
+    pub(crate) kind: Kind,
+    /// In 3D; 2D is per metre of depth.
+    pub(crate) unit: &'static str,
+    pub(crate) default: WhenAbsent,
+    /// One sentence.
+    pub(crate) about: &'static str,
+    pub(crate) only_3d: bool,
+}
+
+/// What holds when a key is absent.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum WhenAbsent {
+    /// An error.
+    Required,
+    /// This TOML.
+    Value(&'static str),
+    /// This TOML in 2D and this in 3D.
+    ByDimension(&'static str, &'static str),
+    /// What these words say; the reader sees to it.
+    Words(&'static str),
+}
+
+/// What a key's value is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Kind {
+    Text,
+    /// "#rrggbb".
+    Color,
+    Number(Bound),
+    /// A whole number from .. to ..
+    Integer(i64, i64),
+    /// D numbers.
+    Vector,
+    /// A number in 2D, three in 3D.
+    Rotation,
+    /// D rows of D numbers.
+    Matrix,
+    /// Points of D numbers.
+    Points,
+    /// Two numbers, the lower first.
+    Interval,
+    /// Two whole numbers above 0.
+    Size,
+    Word(&'static [&'static str]),
+    Words(&'static [&'static str]),
+    /// Names of particle fields.
+    Fields,
+    /// The first alternative that has the value's TOML type decides.
+    OneOf(&'static [Kind]),
+    Table(&'static Section),
+    /// [[name]].
+    Tables(&'static Section),
+    /// [materials.NAME]: a section by the model.
+    Materials,
+    /// Kept free for a later version.
+    Later,
+}
+
+/// Which numbers are allowed; never NaN or infinite ones.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Bound {
+    Any,
+    Positive,
+    NotNegative,
+    /// 0 to 1.
+    Part,
+    /// −1 to ½, both excluded.
+    Poisson,
+}
+
+impl Bound {
+    pub(crate) fn holds(self, number: f64) -> bool {
+        number.is_finite()
+            && match self {
+                Self::Any => true,
+                Self::Positive => number > 0.0,
+                Self::NotNegative => number >= 0.0,
+                Self::Part => (0.0..=1.0).contains(&number),
+                Self::Poisson => number > -1.0 && number < 0.5,
+            }
+    }
+
+    pub(crate) fn words(self) -> &'static str {
+        match self {
+            Self::Any => "a number",
+            Self::Positive => "a number above 0",
+            Self::NotNegative => "a number, 0 or above",
+            Self::Part => "a number from 0 to 1",
+            Self::Poisson => "a number between -1 and 0.5",
+        }
+    }
+}
+
+impl Kind {
+    /// In words, after "must be".
+    pub(crate) fn words(self, dimension: usize) -> String {
+        match self {
+            Self::Text => "text in quotes".to_owned(),
+            Self::Color => "a colour like \"#3d9be9\"".to_owned(),
+            Self::Number(bound) => bound.words().to_owned(),
+            Self::Integer(0, i64::MAX) => "a whole number, 0 or above".to_owned(),
+            Self::Integer(low, i64::MAX) => format!("a whole number, {low} or above"),
+            Self::Integer(low, high) => format!("a whole number from {low} to {high}"),
+            Self::Vector => format!("{dimension} numbers, like {}", vector_example(dimension)),
+            Self::Rotation if dimension == 2 => "a number".to_owned(),
+            Self::Rotation => "3 numbers, like [0.0, 0.0, 1.0]".to_owned(),
+            Self::Matrix => format!("{dimension} rows of {dimension} numbers"),
+            Self::Points => format!("a list of points of {dimension} numbers"),
+            Self::Interval => "two numbers, the lower first".to_owned(),
+            Self::Size => "two whole numbers, like [1280, 720]".to_owned(),
+            Self::Word(words) => alternatives(words),
+            Self::Words(words) => format!("a list of {}", alternatives(words)),
+            Self::Fields => {
+                "a list of particle fields, like [\"position\", \"velocity\"]".to_owned()
+            }
+            Self::OneOf(kinds) => kinds
+                .iter()
+                .map(|kind| kind.words(dimension))
+                .collect::<Vec<_>>()
+                .join(", or "),
+            Self::Table(_) | Self::Materials => "a table".to_owned(),
+            Self::Tables(_) => "a list of tables".to_owned(),
+            Self::Later => "absent".to_owned(),
+        }
+    }
+}
+
+fn vector_example(dimension: usize) -> &'static str {
+    if dimension == 2 {
+        "[0.0, 1.0]"
+    } else {
+        "[0.0, 1.0, 0.0]"
+    }
+}
+
+fn alternatives(words: &[&str]) -> String {
+    words
+        .iter()
+        .map(|word| format!("\"{word}\""))
+        .collect::<Vec<_>>()
+        .join(" | ")
+}
+
+const fn key(
+    name: &'static str,
+    kind: Kind,
+    unit: &'static str,
+    default: WhenAbsent,
+    about: &'static str,
+) -> Key {
+    Key {
+        name,
+        kind,
+        unit,
+        default,
+        about,
+        only_3d: false,
+    }
+}
+
+const fn later(name: &'static str) -> Key {
+    key(name, Kind::Later, "", WhenAbsent::Words(""), "")
+}
+
+const fn only_3d(mut key: Key) -> Key {
+    key.only_3d = true;
+    key
+}
+
+use WhenAbsent::{ByDimension, Required, Value, Words};
+
+/// The tables that have a name of their own in the documentation, in its order.
+pub(crate) const SECTIONS: &[&Section] = &[
+    &SCENE,
+    &DOMAIN,
+    &WALLS,
+    &CONTACT,
+    &NONE,
+    &FLUID,
+    &COROTATED,
+    &NEO_HOOKEAN,
+    &SNOW,
+    &BODY,
+    &SHAPE,
+    &BOX,
+    &BALL,
+    &HALF_SPACE,
+    &POLYGON,
+    &CAMERA,
+    &OUTPUT,
+];
+
+pub(crate) static SCENE: Section = Section {
+    name: "scene",
+    header: "at the top of the file",
+    keys: &[&[
+        key(
+            "title",
+            Kind::Text,
+            "",
+            Value("\"\""),
+            "What the scene is, for people.",
+        ),
+        key(
+            "dimension",
+            Kind::Integer(2, 3),
+            "",
+            Value("2"),
+            "2 or 3; in 2D everything is per metre of depth.",
+        ),
+        key(
+            "duration",
+            Kind::Number(Bound::Positive),
+            "s",
+            Value("1.0"),
+            "Simulated time of a run.",
+        ),
+        key(
+            "frame_rate",
+            Kind::Number(Bound::Positive),
+            "1/s",
+            Words("60.0; with `substeps_per_frame`, what that comes to"),
+            "Frames (outputs) a simulated second.",
+        ),
+        key(
+            "gravity",
+            Kind::Vector,
+            "m/s²",
+            ByDimension("[0.0, -9.81]", "[0.0, -9.81, 0.0]"),
+            "Acceleration of everything.",
+        ),
+        key(
+            "dx",
+            Kind::Number(Bound::Positive),
+            "m",
+            Required,
+            "Distance between the grid's nodes: the resolution.",
+        ),
+        key(
+            "precision",
+            Kind::Word(&["f32", "f64"]),
+            "",
+            Value("\"f32\""),
+            "Numbers of 32 or of 64 bits.",
+        ),
+        key(
+            "kernel",
+            Kind::Word(&["quadratic", "cubic", "linear"]),
+            "",
+            Value("\"quadratic\""),
+            "Weight function between particles and nodes; `linear` needs `force = \"classic\"`.",
+        ),
+        key(
+            "transfer",
+            Kind::Word(&["apic", "pic", "flip"]),
+            "",
+            Value("\"apic\""),
+            "What particles and grid exchange.",
+        ),
+        key(
+            "flip_blend",
+            Kind::Number(Bound::Part),
+            "",
+            Words("0.99, with `transfer = \"flip\"` only"),
+            "Part of FLIP in the particle's velocity, the rest is PIC.",
+        ),
+        key(
+            "force",
+            Kind::Word(&["mls", "classic"]),
+            "",
+            Value("\"mls\""),
+            "Force by moving least squares, or by the gradients of the weights as in the original MPM.",
+        ),
+        key(
+            "cfl",
+            Kind::Number(Bound::Part),
+            "",
+            Value("0.4"),
+            "Part of a cell that sound or a particle may cross in a substep, when the time step is automatic.",
+        ),
+        key(
+            "dt",
+            Kind::OneOf(&[Kind::Number(Bound::Positive), Kind::Word(&["auto"])]),
+            "s",
+            Value("\"auto\""),
+            "Length of every substep; `\"auto\"` finds it from the state.",
+        ),
+        key(
+            "dt_max",
+            Kind::Number(Bound::Positive),
+            "s",
+            Words("no limit"),
+            "Longest substep when the time step is automatic.",
+        ),
+        key(
+            "substeps_per_frame",
+            Kind::Integer(1, 1_000_000),
+            "",
+            Words("as many as fill the frame"),
+            "With a fixed `dt`: a frame is this many substeps, whatever the clock says.",
+        ),
+        key(
+            "seed",
+            Kind::Integer(0, i64::MAX),
+            "",
+            Value("0"),
+            "Of everything random; the same seed gives the same particles.",
+        ),
+        key(
+            "domain",
+            Kind::Table(&DOMAIN),
+            "",
+            Words("unbounded"),
+            "The box that holds the scene.",
+        ),
+        key(
+            "materials",
+            Kind::Materials,
+            "",
+            Required,
+            "What bodies are made of, by name: `[materials.NAME]`.",
+        ),
+        key(
+            "bodies",
+            Kind::Tables(&BODY),
+            "",
+            Required,
+            "What is there at the start: one `[[bodies]]` each.",
+        ),
+        key(
+            "camera",
+            Kind::Table(&CAMERA),
+            "",
+            Value("{}"),
+            "How the window and pictures look at the scene.",
+        ),
+        key(
+            "output",
+            Kind::Table(&OUTPUT),
+            "",
+            Value("{}"),
+            "What a run writes.",
+        ),
+        later("colliders"),
+        later("forces"),
+        later("emitters"),
+        later("drains"),
+        later("probes"),
+    ]],
+};
+
+const CONTACTS: &[&str] = &["sticky", "slip", "separate", "open"];
+const CONTACTS_OR_PERIODIC: &[&str] = &["sticky", "slip", "separate", "open", "periodic"];
+const SIDE: Kind = Kind::OneOf(&[Kind::Word(CONTACTS), Kind::Table(&CONTACT)]);
+
+pub(crate) static DOMAIN: Section = Section {
+    name: "domain",
+    header: "[domain]",
+    keys: &[&[
+        key(
+            "min",
+            Kind::Vector,
+            "m",
+            Required,
+            "Lower corner; nodes are counted from it.",
+        ),
+        key(
+            "max",
+            Kind::Vector,
+            "m",
+            Required,
+            "Upper corner; each side must be a whole number of `dx`.",
+        ),
+        key(
+            "walls",
+            Kind::OneOf(&[Kind::Word(CONTACTS_OR_PERIODIC), Kind::Table(&WALLS)]),
+            "",
+            Value("\"separate\""),
+            "A contact for all sides, or a table by side.",
+        ),
+    ]],
+};
+
+pub(crate) static WALLS: Section = Section {
+    name: "walls",
+    header: "walls = { .. } in [domain]",
+    keys: &[&[
+        key(
+            "contact",
+            SIDE,
+            "",
+            Value("\"separate\""),
+            "Contact of the sides that are not named.",
+        ),
+        key(
+            "left",
+            SIDE,
+            "",
+            Words("`contact`"),
+            "Side at the lowest x.",
+        ),
+        key(
+            "right",
+            SIDE,
+            "",
+            Words("`contact`"),
+            "Side at the highest x.",
+        ),
+        key(
+            "bottom",
+            SIDE,
+            "",
+            Words("`contact`"),
+            "Side at the lowest y.",
+        ),
+        key(
+            "top",
+            SIDE,
+            "",
+            Words("`contact`"),
+            "Side at the highest y.",
+        ),
+        only_3d(key(
+            "back",
+            SIDE,
+            "",
+            Words("`contact`"),
+            "Side at the lowest z.",
+        )),
+        only_3d(key(
+            "front",
+            SIDE,
+            "",
+            Words("`contact`"),
+            "Side at the highest z.",
+        )),
+        key(
+            "x",
+            Kind::Word(&["periodic"]),
+            "",
+            Words("walls"),
+            "What leaves at one end of the axis comes in at the other.",
+        ),
+        key(
+            "y",
+            Kind::Word(&["periodic"]),
+            "",
+            Words("walls"),
+            "The same along y.",
+        ),
+        only_3d(key(
+            "z",
+            Kind::Word(&["periodic"]),
+            "",
+            Words("walls"),
+            "The same along z.",
+        )),
+        key(
+            "style",
+            Kind::Word(&["plane", "nodes"]),
+            "",
+            Value("\"plane\""),
+            "Walls on the domain's planes, or at whole layers of nodes inside it as in the Taichi examples.",
+        ),
+        key(
+            "padding",
+            Kind::Integer(1, 64),
+            "nodes",
+            Words("3, with `style = \"nodes\"` only"),
+            "Layers of nodes that a wall takes.",
+        ),
+    ]],
+};
+
+pub(crate) static CONTACT: Section = Section {
+    name: "contact",
+    header: "{ .. } for a side",
+    keys: &[&[
+        key(
+            "contact",
+            Kind::Word(CONTACTS),
+            "",
+            Required,
+            "`sticky`: no motion; `slip`: none through the wall or away from it; `separate`: none into it, free to leave; `open`: particles that pass are removed.",
+        ),
+        key(
+            "friction",
+            Kind::Number(Bound::NotNegative),
+            "",
+            Words("0, with `slip` and `separate` only"),
+            "Coefficient of Coulomb friction.",
+        ),
+    ]],
+};
+
+/// Keys of every material.
+const MATERIAL: &[Key] = &[
+    key(
+        "model",
+        Kind::Word(MODELS),
+        "",
+        Words("the preset's, else required"),
+        "The constitutive law.",
+    ),
+    key(
+        "preset",
+        Kind::Word(super::preset::NAMES),
+        "",
+        Words("none"),
+        "Values to start from; keys that are given replace them.",
+    ),
+    key(
+        "density",
+        Kind::Number(Bound::Positive),
+        "kg/m³",
+        Words("the preset's, else required"),
+        "Density at rest.",
+    ),
+    key(
+        "color",
+        Kind::Color,
+        "",
+        Words("the outlet's"),
+        "Colour of its particles in windows and pictures.",
+    ),
+];
+
+pub(crate) const MODELS: &[&str] = &["none", "fluid", "corotated", "neo_hookean", "snow"];
+
+/// The section of a model.
+pub(crate) fn model_section(model: &str) -> Option<&'static Section> {
+    match model {
+        "none" => Some(&NONE),
+        "fluid" => Some(&FLUID),
+        "corotated" => Some(&COROTATED),
+        "neo_hookean" => Some(&NEO_HOOKEAN),
+        "snow" => Some(&SNOW),
+        _ => None,
+    }
+}
+
+/// Pairs that say the same; a scene gives one of them.
+pub(crate) const MODULI: [[&str; 2]; 3] = [
+    ["youngs_modulus", "poisson_ratio"],
+    ["bulk_modulus", "shear_modulus"],
+    ["lame_lambda", "lame_mu"],
+];
+
+const ELASTIC: &[Key] = &[
+    key(
+        "youngs_modulus",
+        Kind::Number(Bound::Positive),
+        "Pa",
+        Words("one of the three pairs is required"),
+        "Young's modulus, together with `poisson_ratio`.",
+    ),
+    key(
+        "poisson_ratio",
+        Kind::Number(Bound::Poisson),
+        "",
+        Words("with `youngs_modulus`"),
+        "Poisson's ratio; λ and μ follow as in plane strain in 2D.",
+    ),
+    key(
+        "bulk_modulus",
+        Kind::Number(Bound::Positive),
+        "Pa",
+        Words("with `shear_modulus`"),
+        "K = λ + 2μ/d in d dimensions.",
+    ),
+    key(
+        "shear_modulus",
+        Kind::Number(Bound::NotNegative),
+        "Pa",
+        Words("with `bulk_modulus`"),
+        "Shear modulus G = μ.",
+    ),
+    key(
+        "lame_lambda",
+        Kind::Number(Bound::Any),
+        "Pa",
+        Words("with `lame_mu`"),
+        "Lamé's first parameter λ; λ + 2μ/d must be positive.",
+    ),
+    key(
+        "lame_mu",
+        Kind::Number(Bound::NotNegative),
+        "Pa",
+        Words("with `lame_lambda`"),
+        "Lamé's second parameter μ.",
+    ),
+];
+
+pub(crate) static NONE: Section = Section {
+    name: "material: none",
+    header: "[materials.NAME] with model = \"none\"",
+    keys: &[MATERIAL],
+};
+
+pub(crate) static FLUID: Section = Section {
+    name: "material: fluid",
+    header: "[materials.NAME] with model = \"fluid\"",
+    keys: &[
+        MATERIAL,
+        &[
+            key(
+                "eos",
+                Kind::Word(&["tait", "linear_j"]),
+                "",
+                Value("\"tait\""),
+                "Equation of state: p = (K/γ)((ρ/ρ₀)^γ − 1), or p = K(1 − J).",
+            ),
+            key(
+                "gamma",
+                Kind::Number(Bound::Positive),
+                "",
+                Words("7.0, with `tait` only"),
+                "Exponent γ of `tait`; 1: τ = K(J − 1), the mpm88 fluid.",
+            ),
+            key(
+                "sound_speed",
+                Kind::OneOf(&[Kind::Number(Bound::Positive), Kind::Word(&["auto"])]),
+                "m/s",
+                Words("\"auto\", unless `bulk_modulus` is given"),
+                "Speed of sound c; `\"auto\"`: ten times the largest speed expected, √(v² + 2gH) with the bodies' largest speed v and their highest point's height H above the floor.",
+            ),
+            key(
+                "bulk_modulus",
+                Kind::OneOf(&[Kind::Number(Bound::Positive), Kind::Word(&["auto"])]),
+                "Pa",
+                Words("ρ₀c²"),
+                "Stiffness K, instead of `sound_speed`.",
+            ),
+            key(
+                "viscosity",
+                Kind::Number(Bound::NotNegative),
+                "Pa s",
+                Value("0.0"),
+                "Dynamic viscosity.",
+            ),
+            key(
+                "bulk_viscosity",
+                Kind::Number(Bound::NotNegative),
+                "Pa s",
+                Value("0.0"),
+                "Viscosity against change of volume.",
+            ),
+            key(
+                "tension",
+                Kind::OneOf(&[Kind::Number(Bound::NotNegative), Kind::Word(&["unlimited"])]),
+                "Pa",
+                Value("0.0"),
+                "Largest tension it bears before it tears.",
+            ),
+            key(
+                "jacobian_update",
+                Kind::Word(&["trace", "det"]),
+                "",
+                Value("\"trace\""),
+                "J ← J(1 + Δt tr C), or J ← J det(I + Δt C).",
+            ),
+            later("volume"),
+            later("rheology"),
+            later("yield_stress"),
+            later("consistency"),
+            later("flow_index"),
+        ],
+    ],
+};
+
+pub(crate) static COROTATED: Section = Section {
+    name: "material: corotated",
+    header: "[materials.NAME] with model = \"corotated\"",
+    keys: &[MATERIAL, ELASTIC],
+};
+
+pub(crate) static NEO_HOOKEAN: Section = Section {
+    name: "material: neo_hookean",
+    header: "[materials.NAME] with model = \"neo_hookean\"",
+    keys: &[MATERIAL, ELASTIC],
+};
+
+pub(crate) static SNOW: Section = Section {
+    name: "material: snow",
+    header: "[materials.NAME] with model = \"snow\"",
+    keys: &[
+        MATERIAL,
+        ELASTIC,
+        &[
+            key(
+                "critical_compression",
+                Kind::Number(Bound::Part),
+                "",
+                Value("2.5e-2"),
+                "θc: singular values of F stay above 1 − θc.",
+            ),
+            key(
+                "critical_stretch",
+                Kind::Number(Bound::NotNegative),
+                "",
+                Value("7.5e-3"),
+                "θs: singular values of F stay below 1 + θs.",
+            ),
+            key(
+                "hardening",
+                Kind::Number(Bound::NotNegative),
+                "",
+                Value("10.0"),
+                "ξ: moduli grow by h = exp(ξ(1 − Jp)) as snow packs.",
+            ),
+            key(
+                "hardening_range",
+                Kind::Interval,
+                "",
+                Value("[0.0, inf]"),
+                "h is kept in it.",
+            ),
+            key(
+                "plastic_jacobian_range",
+                Kind::Interval,
+                "",
+                Value("[0.6, 20.0]"),
+                "Jp is kept in it.",
+            ),
+            key(
+                "hardening_from",
+                Kind::Word(&["updated", "previous"]),
+                "",
+                Value("\"updated\""),
+                "Jp that h is taken from: after this substep's clamping, or before it as in mpm99 and mpm128.",
+            ),
+        ],
+    ],
+};
+
+pub(crate) static BODY: Section = Section {
+    name: "body",
+    header: "[[bodies]]",
+    keys: &[&[
+        key(
+            "name",
+            Kind::Text,
+            "",
+            Words("\"body-N\", N its number from 0"),
+            "Name, for outputs and `--set bodies.NAME.velocity=..`.",
+        ),
+        key(
+            "material",
+            Kind::Text,
+            "",
+            Required,
+            "Name of one of the materials.",
+        ),
+        key(
+            "shape",
+            Kind::Table(&SHAPE),
+            "",
+            Words("this or `particles`"),
+            "The space it fills; what lies outside the domain is cut off.",
+        ),
+        key(
+            "particles",
+            Kind::Text,
+            "",
+            Words("this or `shape`"),
+            "Particle list, .csv or .npz, found from the scene's folder.",
+        ),
+        key(
+            "velocity",
+            Kind::Vector,
+            "m/s",
+            ByDimension("[0.0, 0.0]", "[0.0, 0.0, 0.0]"),
+            "Velocity at the start; added to that of a particle list.",
+        ),
+        key(
+            "spin",
+            Kind::Rotation,
+            "rad/s",
+            ByDimension("0.0", "[0.0, 0.0, 0.0]"),
+            "Rotation about the body's centre of mass, counter-clockwise.",
+        ),
+        key(
+            "velocity_gradient",
+            Kind::Matrix,
+            "1/s",
+            Words("none"),
+            "Rows of ∂v_i/∂x_j, about the body's centre of mass.",
+        ),
+        key(
+            "particles_per_cell",
+            Kind::Number(Bound::Positive),
+            "",
+            Words("4 in 2D, 8 in 3D; unless `spacing` or `count` is given"),
+            "Particles in a cell of the grid that the body fills.",
+        ),
+        key(
+            "spacing",
+            Kind::Number(Bound::Positive),
+            "m",
+            Words("from `particles_per_cell`"),
+            "Distance between particles, instead.",
+        ),
+        key(
+            "count",
+            Kind::Integer(1, 4_294_967_295),
+            "",
+            Words("from `particles_per_cell`"),
+            "Number of particles, instead; with `random` and `poisson` sampling only.",
+        ),
+        key(
+            "sampling",
+            Kind::Word(&["lattice", "jittered", "random", "poisson"]),
+            "",
+            Value("\"jittered\""),
+            "Where particles are: on a lattice fitted to the shape; at random in that lattice's cells; anywhere; anywhere but never close together.",
+        ),
+        key(
+            "particle_volume",
+            Kind::Number(Bound::Positive),
+            "m³",
+            Words("shape's volume / number of particles, so that the mass is exact"),
+            "Rest volume of each particle.",
+        ),
+        key(
+            "volume",
+            Kind::Number(Bound::Positive),
+            "m³",
+            Words("the shape's"),
+            "Rest volume of the whole body, shared by its particles alike.",
+        ),
+        key(
+            "color",
+            Kind::Color,
+            "",
+            Words("the material's"),
+            "Colour of its particles.",
+        ),
+    ]],
+};
+
+pub(crate) static SHAPE: Section = Section {
+    name: "shape",
+    header: "shape = { .. } in [[bodies]]: exactly one of",
+    keys: &[&[
+        key(
+            "box",
+            Kind::Table(&BOX),
+            "",
+            Words("–"),
+            "A box along the axes.",
+        ),
+        key(
+            "ball",
+            Kind::Table(&BALL),
+            "",
+            Words("–"),
+            "A ball; in 2D a disc.",
+        ),
+        key(
+            "half_space",
+            Kind::Table(&HALF_SPACE),
+            "",
+            Words("–"),
+            "All on one side of a plane (in 2D: of a line); needs a domain.",
+        ),
+        key(
+            "polygon",
+            Kind::Table(&POLYGON),
+            "",
+            Words("–"),
+            "A polygon, in 2D only.",
+        ),
+        later("cylinder"),
+        later("capsule"),
+        later("mesh"),
+        later("union"),
+        later("difference"),
+        later("translate"),
+        later("rotate"),
+    ]],
+};
+
+pub(crate) static BOX: Section = Section {
+    name: "box",
+    header: "box = { .. }",
+    keys: &[&[
+        key("min", Kind::Vector, "m", Required, "Lower corner."),
+        key("max", Kind::Vector, "m", Required, "Upper corner."),
+    ]],
+};
+
+pub(crate) static BALL: Section = Section {
+    name: "ball",
+    header: "ball = { .. }",
+    keys: &[&[
+        key("center", Kind::Vector, "m", Required, "Its centre."),
+        key(
+            "radius",
+            Kind::Number(Bound::Positive),
+            "m",
+            Required,
+            "Its radius.",
+        ),
+    ]],
+};
+
+pub(crate) static HALF_SPACE: Section = Section {
+    name: "half_space",
+    header: "half_space = { .. }",
+    keys: &[&[
+        key(
+            "point",
+            Kind::Vector,
+            "m",
+            Required,
+            "A point on the plane.",
+        ),
+        key(
+            "normal",
+            Kind::Vector,
+            "",
+            Required,
+            "Direction out of the body, of any length.",
+        ),
+    ]],
+};
+
+pub(crate) static POLYGON: Section = Section {
+    name: "polygon",
+    header: "polygon = { .. }",
+    keys: &[&[key(
+        "points",
+        Kind::Points,
+        "m",
+        Required,
+        "Its corners in order, either way round; at least 3, sides must not cross.",
+    )]],
+};
+
+pub(crate) static CAMERA: Section = Section {
+    name: "camera",
+    header: "[camera]",
+    keys: &[&[
+        key(
+            "center",
+            Kind::Vector,
+            "m",
+            Words("the middle of the domain, or of the bodies"),
+            "What it looks at.",
+        ),
+        key(
+            "height",
+            Kind::Number(Bound::Positive),
+            "m",
+            Words("all of the domain, or of the bodies"),
+            "Height of the scene that the picture shows, at the centre.",
+        ),
+        only_3d(key(
+            "direction",
+            Kind::Vector,
+            "",
+            Value("[0.5, 0.35, 1.0]"),
+            "From the centre to the camera, of any length; up is y.",
+        )),
+        only_3d(key(
+            "field_of_view",
+            Kind::Number(Bound::Positive),
+            "°",
+            Value("35.0"),
+            "Angle between the picture's lower and upper edge.",
+        )),
+        key(
+            "background",
+            Kind::Color,
+            "",
+            Value("\"#112f41\""),
+            "Colour behind everything.",
+        ),
+        key(
+            "particle_radius",
+            Kind::Number(Bound::Positive),
+            "m",
+            Words("from the spacing of the particles"),
+            "Radius of a particle as drawn.",
+        ),
+        key(
+            "color_by",
+            Kind::Word(&["material", "body", "speed", "pressure", "J", "density"]),
+            "",
+            Value("\"material\""),
+            "What colours say.",
+        ),
+    ]],
+};
+
+pub(crate) static OUTPUT: Section = Section {
+    name: "output",
+    header: "[output]",
+    keys: &[&[
+        key(
+            "formats",
+            Kind::Words(&["npz", "png", "gif", "none"]),
+            "",
+            Value("[\"npz\", \"gif\"]"),
+            "Files a run writes: particles by frame, pictures by frame, an animation.",
+        ),
+        key(
+            "fields",
+            Kind::Fields,
+            "",
+            Words("all that the particles have"),
+            "Fields in files of particles.",
+        ),
+        key(
+            "every",
+            Kind::Integer(1, 1_000_000_000),
+            "frames",
+            Value("1"),
+            "Write every so many frames.",
+        ),
+        key(
+            "checkpoint_every",
+            Kind::Integer(0, 1_000_000_000),
+            "frames",
+            Value("0"),
+            "Write a checkpoint every so many frames; 0: none.",
+        ),
+        key(
+            "picture_size",
+            Kind::Size,
+            "pixels",
+            Value("[960, 540]"),
+            "Width and height of pictures.",
+        ),
+    ]],
+};

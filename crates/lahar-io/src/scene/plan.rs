@@ -1,0 +1,1068 @@
+//! From a checked document to a plan in numbers of one dimension: domain, materials, bodies.
+
+use super::Limits;
+use super::keys::MODULI;
+use super::read::Reader;
+use crate::error::{SceneError, nearest};
+use crate::particle_list::ParticleList;
+use crate::sampling::{Sampling, expected_count};
+use crate::shape::{Bounds, Region, Shape, area, crossing};
+use lahar::material::{
+    Corotated, Dust, Eos, Fluid, HardeningFrom, JacobianUpdate, NeoHookean, Snow, lame,
+};
+use lahar::{
+    Contact, Domain, ForceForm, Kernel, Material, Model, Sides, TimeStep, Transfer, WallStyle,
+};
+
+/// Everything that depends on the dimension.
+#[derive(Clone, Debug)]
+pub(crate) struct Plan<const D: usize> {
+    pub(crate) dx: f64,
+    pub(crate) gravity: [f64; D],
+    pub(crate) domain: Option<Domain<D>>,
+    pub(crate) kernel: Kernel,
+    pub(crate) transfer: Transfer,
+    pub(crate) force: ForceForm,
+    pub(crate) time_step: TimeStep,
+    pub(crate) materials: Vec<Material>,
+    pub(crate) bodies: Vec<Body<D>>,
+    pub(crate) warnings: Vec<String>,
+}
+
+/// One body.
+#[derive(Clone, Debug)]
+pub(crate) struct Body<const D: usize> {
+    pub(crate) name: String,
+    pub(crate) material: usize,
+    pub(crate) source: Source<D>,
+    pub(crate) velocity: [f64; D],
+    /// ∂v_i/∂x_j of spin and velocity gradient together \[1/s\].
+    pub(crate) gradient: [[f64; D]; D],
+    pub(crate) volume: Volume,
+}
+
+/// Where the particles come from.
+#[derive(Clone, Debug)]
+pub(crate) enum Source<const D: usize> {
+    Shape {
+        region: Region<D>,
+        spacing: f64,
+        count: Option<usize>,
+        sampling: Sampling,
+    },
+    List(ParticleList<D>),
+}
+
+/// Who says what the particles' volume is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Volume {
+    /// The shape, or the list.
+    Source,
+    /// The scene, for the body \[m³\].
+    Body(f64),
+    /// The scene, for a particle \[m³\].
+    Particle(f64),
+}
+
+impl<const D: usize> Body<D> {
+    /// A box around its particles \[m\].
+    pub(crate) fn bounds(&self) -> Bounds<D> {
+        match &self.source {
+            Source::Shape { region, .. } => *region.bounds(),
+            Source::List(list) => Shape::Polygon {
+                points: list.position.clone(),
+            }
+            .bounds(),
+        }
+    }
+
+    /// Particles; of shapes that are sampled on lattices about so many.
+    pub(crate) fn expected_particles(&self) -> f64 {
+        match &self.source {
+            Source::Shape {
+                count: Some(count), ..
+            } => *count as f64,
+            Source::Shape {
+                region, spacing, ..
+            } => expected_count(region, *spacing),
+            Source::List(list) => list.position.len() as f64,
+        }
+    }
+
+    /// The largest speed at the start \[m/s\], or a bound on it.
+    fn speed(&self) -> f64 {
+        let length = |v: &[f64; D]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let bounds = self.bounds();
+        let half: [f64; D] = core::array::from_fn(|i| 0.5 * bounds.side(i));
+        let turning: [f64; D] =
+            core::array::from_fn(|i| (0..D).map(|j| self.gradient[i][j].abs() * half[j]).sum());
+        let listed = match &self.source {
+            Source::List(list) if !list.velocity.is_empty() => list
+                .velocity
+                .iter()
+                .map(|v| length(&core::array::from_fn(|i| v[i] + self.velocity[i])))
+                .fold(0.0, f64::max),
+            _ => length(&self.velocity),
+        };
+        listed + length(&turning)
+    }
+}
+
+/// How a fluid's stiffness is given.
+#[derive(Clone, Copy)]
+enum Stiffness {
+    Auto,
+    SoundSpeed(f64),
+    Bulk(f64),
+}
+
+/// Sound travels so many times faster than the fastest water that is expected: density then varies
+/// by about 1 % (Monaghan 1994).
+const SOUND_OVER_SPEED: f64 = 10.0;
+
+impl<const D: usize> Plan<D> {
+    pub(crate) fn read(
+        scene: &Reader<'_>,
+        limits: &Limits,
+        file: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, SceneError> {
+        let dx = scene.number("dx")?;
+        let mut warnings = Vec::new();
+        let gravity = scene.vector("gravity")?;
+        let domain = scene
+            .opt_table("domain")
+            .map(|table| read_domain(scene, &table, dx))
+            .transpose()?;
+        let kernel = match scene.text("kernel")? {
+            "linear" => Kernel::Linear,
+            "cubic" => Kernel::Cubic,
+            _ => Kernel::Quadratic,
+        };
+        let force = if scene.text("force")? == "classic" {
+            ForceForm::Classic
+        } else {
+            ForceForm::Mls
+        };
+        if kernel == Kernel::Linear && force == ForceForm::Mls {
+            let error = scene.error_at(
+                "kernel",
+                "the linear kernel has no MLS force: its inertia is singular at nodes",
+            );
+            return Err(error.hint("add force = \"classic\", or choose kernel = \"quadratic\""));
+        }
+        let transfer = read_transfer(scene)?;
+        let time_step = read_time_step(scene)?;
+
+        let mut materials = Vec::new();
+        let mut stiffness = Vec::new();
+        for (name, table) in scene.tables("materials") {
+            let (material, given) = read_material::<D>(name, &table)?;
+            materials.push(material);
+            stiffness.push((given, table));
+        }
+        let mut bodies = Vec::new();
+        for (index, (_, table)) in scene.tables("bodies").into_iter().enumerate() {
+            let body = read_body(
+                index,
+                &table,
+                &materials,
+                domain.as_ref(),
+                dx,
+                file,
+                &mut warnings,
+            )?;
+            if bodies.iter().any(|other: &Body<D>| other.name == body.name) {
+                return Err(
+                    table.error_at("name", format!("two bodies are called \"{}\"", body.name))
+                );
+            }
+            bodies.push(body);
+            check_count(&bodies, &table, limits)?;
+        }
+        let mut plan = Self {
+            dx,
+            gravity,
+            domain,
+            kernel,
+            transfer,
+            force,
+            time_step,
+            materials,
+            bodies,
+            warnings,
+        };
+        plan.settle_stiffness(&stiffness)?;
+        plan.warn();
+        Ok(plan)
+    }
+
+    /// Largest speed that the bodies may reach: √(v² + 2 g H) \[m/s\].
+    fn expected_speed(&self) -> f64 {
+        let g = self.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let fastest = self.bodies.iter().map(Body::speed).fold(0.0, f64::max);
+        if g == 0.0 {
+            return fastest;
+        }
+        // Lowest and highest height of a box against gravity.
+        let heights = |bounds: &Bounds<D>| {
+            let mut range = [0.0, 0.0];
+            for i in 0..D {
+                let up = -self.gravity[i] / g;
+                if up != 0.0 {
+                    let (a, b) = (bounds.min[i] * up, bounds.max[i] * up);
+                    range = [range[0] + a.min(b), range[1] + a.max(b)];
+                }
+            }
+            range
+        };
+        let of_bodies: Vec<[f64; 2]> = self
+            .bodies
+            .iter()
+            .map(|body| heights(&body.bounds()))
+            .collect();
+        let top = of_bodies
+            .iter()
+            .map(|range| range[1])
+            .fold(f64::NEG_INFINITY, f64::max);
+        let floor = match &self.domain {
+            Some(domain) => heights(&Bounds {
+                min: domain.min,
+                max: domain.max,
+            })[0],
+            None => of_bodies
+                .iter()
+                .map(|range| range[0])
+                .fold(f64::INFINITY, f64::min),
+        };
+        (fastest * fastest + 2.0 * g * (top - floor).max(0.0)).sqrt()
+    }
+
+    /// Gives every fluid its bulk modulus.
+    fn settle_stiffness(&mut self, given: &[(Stiffness, Reader<'_>)]) -> Result<(), SceneError> {
+        let speed = self.expected_speed();
+        for (material, (stiffness, table)) in self.materials.iter_mut().zip(given) {
+            let Model::Fluid(fluid) = &mut material.model else {
+                continue;
+            };
+            fluid.bulk_modulus = match stiffness {
+                Stiffness::Bulk(bulk) => *bulk,
+                Stiffness::SoundSpeed(c) => material.density * c * c,
+                Stiffness::Auto if speed > 0.0 => {
+                    material.density * (SOUND_OVER_SPEED * speed).powi(2)
+                }
+                Stiffness::Auto => {
+                    let error = table.error_at("sound_speed", format!("the speed of sound of \"{}\" cannot be found: nothing moves or can fall", material.name));
+                    return Err(error.hint(
+                        "give sound_speed a number, about ten times the largest speed you expect",
+                    ));
+                }
+            };
+        }
+        Ok(())
+    }
+
+    fn warn(&mut self) {
+        let mut warnings = core::mem::take(&mut self.warnings);
+        let speed = self.expected_speed();
+        for (index, material) in self.materials.iter().enumerate() {
+            if !self.bodies.iter().any(|body| body.material == index) {
+                warnings.push(format!(
+                    "material \"{}\" is not used by any body",
+                    material.name
+                ));
+                continue;
+            }
+            let c = wave_speed::<D>(material);
+            if matches!(material.model, Model::Fluid(_)) && speed > 0.2 * c * (1.0 + 1e-9) {
+                warnings.push(format!("speeds up to {speed:.3} m/s are expected, more than a fifth of the speed of sound {c:.3} m/s of \"{}\": it will be visibly compressed", material.name));
+            }
+            if let TimeStep::Fixed(dt) = self.time_step
+                && dt * c > self.dx
+            {
+                warnings.push(format!("dt = {dt} s is longer than sound in \"{}\" takes to cross a cell ({:.3e} s): expect it to blow up", material.name, self.dx / c));
+            }
+        }
+        for body in &self.bodies {
+            let Source::Shape {
+                region,
+                spacing,
+                count,
+                ..
+            } = &body.source
+            else {
+                continue;
+            };
+            let per_cell = match count {
+                Some(count) => *count as f64 / region.volume() * self.dx.powi(D as i32),
+                None => (self.dx / spacing).powi(D as i32),
+            };
+            let few = if D == 2 { 2.0 } else { 4.0 };
+            if per_cell < few {
+                warnings.push(format!("body \"{}\" has {per_cell:.2} particles a cell: below {few} it may fall apart into grains", body.name));
+            }
+            let thin = (0..D)
+                .map(|i| region.bounds().side(i))
+                .fold(f64::INFINITY, f64::min);
+            if thin < 2.0 * self.dx {
+                warnings.push(format!(
+                    "body \"{}\" is {thin:.4} m thin, less than two cells: the grid hardly sees it",
+                    body.name
+                ));
+            }
+            if region.is_cut() {
+                warnings.push(format!(
+                    "body \"{}\" reaches out of the domain and is cut off there",
+                    body.name
+                ));
+            }
+        }
+        self.warnings = warnings;
+    }
+
+    /// Bodies' expected particles, in order.
+    pub(crate) fn expected_particles(&self) -> Vec<f64> {
+        self.bodies.iter().map(Body::expected_particles).collect()
+    }
+}
+
+/// Speed of pressure waves at rest \[m/s\].
+pub(crate) fn wave_speed<const D: usize>(material: &Material) -> f64 {
+    let modulus = match material.model {
+        Model::Dust(_) => 0.0,
+        Model::Fluid(fluid) => fluid.bulk_modulus,
+        Model::Corotated(m) => m.lambda + 2.0 * m.mu,
+        Model::NeoHookean(m) => m.lambda + 2.0 * m.mu,
+        Model::Snow(m) => m.lambda + 2.0 * m.mu,
+    };
+    (modulus.max(0.0) / material.density).sqrt()
+}
+
+/// The bodies so far against the memory that may be used.
+fn check_count<const D: usize>(
+    bodies: &[Body<D>],
+    table: &Reader<'_>,
+    limits: &Limits,
+) -> Result<(), SceneError> {
+    let total: f64 = bodies.iter().map(Body::expected_particles).sum();
+    // Cells that sampling has to look at: a thin slanted shape fills little of its bounds.
+    let candidates: f64 = bodies
+        .iter()
+        .map(|body| match &body.source {
+            Source::Shape {
+                region, spacing, ..
+            } => region.bounds().volume() / spacing.powi(D as i32),
+            Source::List(_) => 0.0,
+        })
+        .sum();
+    let most = (limits.memory as f64 / Limits::BYTES_PER_PARTICLE).min(f64::from(u32::MAX));
+    if total <= most && candidates <= 64.0 * most {
+        return Ok(());
+    }
+    let key = ["count", "spacing", "particles_per_cell", "shape"]
+        .into_iter()
+        .find(|key| table.has(key))
+        .unwrap_or("particles");
+    let gigabytes = total * Limits::BYTES_PER_PARTICLE / 1e9;
+    let error = table.error_at(
+        key,
+        format!(
+            "this scene comes to {} particles, about {} GB; the limit is {} GB",
+            count_words(total),
+            count_words(gigabytes.ceil()),
+            limits.memory as f64 / 1e9
+        ),
+    );
+    Err(error.hint("use a larger dx, fewer particles_per_cell or smaller bodies"))
+}
+
+/// A count as people read it.
+fn count_words(count: f64) -> String {
+    if count >= 1e7 {
+        format!("{count:.1e}")
+    } else {
+        format!("{count:.0}")
+    }
+}
+
+fn read_transfer(scene: &Reader<'_>) -> Result<Transfer, SceneError> {
+    let transfer = scene.text("transfer")?;
+    if transfer != "flip" && scene.has("flip_blend") {
+        return Err(scene
+            .error_at_key(
+                "flip_blend",
+                "\"flip_blend\" is for transfer = \"flip\" only",
+            )
+            .hint(format!("this scene has transfer = \"{transfer}\"")));
+    }
+    Ok(match transfer {
+        "pic" => Transfer::Pic,
+        "flip" => Transfer::Flip {
+            blend: scene.opt_number("flip_blend").unwrap_or(0.99),
+        },
+        _ => Transfer::Apic,
+    })
+}
+
+fn read_time_step(scene: &Reader<'_>) -> Result<TimeStep, SceneError> {
+    if let Some(dt) = scene.opt_number("dt") {
+        if scene.has("dt_max") {
+            return Err(scene
+                .error_at_key("dt_max", "\"dt_max\" is for automatic time steps")
+                .hint("remove it, or dt"));
+        }
+        return Ok(TimeStep::Fixed(dt));
+    }
+    let cfl = scene.number("cfl")?;
+    if cfl <= 0.0 {
+        return Err(scene.error_at("cfl", "\"cfl\" must be above 0"));
+    }
+    Ok(TimeStep::Automatic {
+        cfl,
+        longest: scene.opt_number("dt_max").unwrap_or(f64::INFINITY),
+    })
+}
+
+/// Nodes along an axis stay below this: block coordinates are 32-bit numbers.
+const MOST_CELLS: f64 = 1e9;
+
+fn read_domain<const D: usize>(
+    scene: &Reader<'_>,
+    table: &Reader<'_>,
+    dx: f64,
+) -> Result<Domain<D>, SceneError> {
+    let (min, max): ([f64; D], [f64; D]) = (table.vector("min")?, table.vector("max")?);
+    for i in 0..D {
+        if !(max[i] > min[i]) {
+            return Err(table.error_at(
+                "max",
+                format!(
+                    "the domain has no extent along {}: max {} is not above min {}",
+                    AXES[i], max[i], min[i]
+                ),
+            ));
+        }
+        let cells = (max[i] - min[i]) / dx;
+        if cells > MOST_CELLS {
+            return Err(scene
+                .error_at(
+                    "dx",
+                    format!(
+                        "the domain would have {} cells along {}",
+                        count_words(cells),
+                        AXES[i]
+                    ),
+                )
+                .hint("use a larger dx or a smaller domain"));
+        }
+    }
+    let sides: [f64; D] = core::array::from_fn(|i| max[i] - min[i]);
+    if let Some(i) = (0..D).find(|&i| !is_whole(sides[i] / dx)) {
+        let cells = sides[i] / dx;
+        let error = scene.error_at("dx", format!("the domain is {} m along {}, which is {cells:.4} cells of dx = {dx}; it must be a whole number", tidy(sides[i]), AXES[i]));
+        return Err(match fitting_dx(&sides, dx) {
+            Some(fit) => error.hint(format!("the nearest dx that fits is {fit}")),
+            None => {
+                let whole = tidy(min[i] + (cells.round().max(1.0)) * dx);
+                error.hint(format!(
+                    "change dx, or the domain: max = {whole} along {} would fit",
+                    AXES[i]
+                ))
+            }
+        });
+    }
+    let (walls, style) = read_walls(table)?;
+    Ok(Domain {
+        min,
+        max,
+        sides: walls,
+        style,
+    })
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], ["back", "front"]];
+
+/// Whether a side is a whole number of cells, but for the rounding of decimal fractions.
+fn is_whole(cells: f64) -> bool {
+    cells > 0.5 && (cells - cells.round()).abs() <= 1e-6 * cells.max(1.0).sqrt()
+}
+
+/// A length without the noise of subtraction.
+fn tidy(length: f64) -> f64 {
+    format!("{length:.12}").parse().unwrap_or(length)
+}
+
+/// The dx nearest to `dx` of which every side is a whole number.
+fn fitting_dx(sides: &[f64], dx: f64) -> Option<f64> {
+    let cells = (sides[0] / dx).round().max(1.0);
+    let fits = |n: f64| {
+        let fit = tidy(sides[0]) / n;
+        (n >= 1.0 && sides.iter().all(|side| is_whole(side / fit))).then_some(fit)
+    };
+    let nearer = |a: f64, b: f64| {
+        if (a - dx).abs() <= (b - dx).abs() {
+            a
+        } else {
+            b
+        }
+    };
+    let reach = (cells as u32).clamp(8, 10_000);
+    let below = (0..reach).find_map(|k| fits(cells + f64::from(k)));
+    let above = (1..reach).find_map(|k| fits(cells - f64::from(k)));
+    match (below, above) {
+        (Some(a), Some(b)) => Some(nearer(a, b)),
+        (a, b) => a.or(b),
+    }
+}
+
+fn read_walls<const D: usize>(domain: &Reader<'_>) -> Result<([Sides; D], WallStyle), SceneError> {
+    if let Some(word) = domain.opt_text("walls") {
+        let sides = if word == "periodic" {
+            Sides::Periodic
+        } else {
+            let contact = contact_word(word);
+            Sides::Walls {
+                low: contact,
+                high: contact,
+            }
+        };
+        return Ok(([sides; D], WallStyle::Plane));
+    }
+    let Some(walls) = domain.opt_table("walls") else {
+        return Err(domain.error("there are no walls"));
+    };
+    let other = read_contact(&walls, "contact")?.unwrap_or(Contact::Separate { friction: 0.0 });
+    let mut sides = [Sides::Periodic; D];
+    for i in 0..D {
+        let [low, high] = SIDES[i];
+        if walls.has(AXES[i]) {
+            if let Some(side) = [low, high].into_iter().find(|side| walls.has(side)) {
+                return Err(walls.error_at_key(
+                    side,
+                    format!("there is no wall at the {side}: {} is periodic", AXES[i]),
+                ));
+            }
+            continue;
+        }
+        sides[i] = Sides::Walls {
+            low: read_contact(&walls, low)?.unwrap_or(other),
+            high: read_contact(&walls, high)?.unwrap_or(other),
+        };
+    }
+    let style = if walls.text("style")? == "nodes" {
+        WallStyle::Nodes {
+            padding: walls.opt_integer("padding").unwrap_or(3) as u32,
+        }
+    } else if walls.has("padding") {
+        return Err(walls.error_at_key("padding", "\"padding\" is for style = \"nodes\" only"));
+    } else {
+        WallStyle::Plane
+    };
+    Ok((sides, style))
+}
+
+fn contact_word(word: &str) -> Contact {
+    match word {
+        "sticky" => Contact::Sticky,
+        "slip" => Contact::Slip { friction: 0.0 },
+        "open" => Contact::Open,
+        _ => Contact::Separate { friction: 0.0 },
+    }
+}
+
+fn read_contact(walls: &Reader<'_>, side: &str) -> Result<Option<Contact>, SceneError> {
+    if let Some(word) = walls.opt_text(side) {
+        return Ok(Some(contact_word(word)));
+    }
+    let Some(table) = walls.opt_table(side) else {
+        return Ok(None);
+    };
+    let mut contact = contact_word(table.text("contact")?);
+    if let Some(given) = table.opt_number("friction") {
+        match &mut contact {
+            Contact::Slip { friction } | Contact::Separate { friction } => *friction = given,
+            Contact::Sticky | Contact::Open => {
+                return Err(table
+                    .error_at_key("friction", "friction is for \"slip\" and \"separate\" only"));
+            }
+        }
+    }
+    Ok(Some(contact))
+}
+
+fn read_material<const D: usize>(
+    name: &str,
+    table: &Reader<'_>,
+) -> Result<(Material, Stiffness), SceneError> {
+    let mut stiffness = Stiffness::Auto;
+    let model = match table.text("model")? {
+        "none" => Model::Dust(Dust),
+        "fluid" => {
+            let (fluid, given) = read_fluid(table)?;
+            stiffness = given;
+            Model::Fluid(fluid)
+        }
+        "corotated" => {
+            let (lambda, mu) = read_moduli::<D>(table)?;
+            Model::Corotated(Corotated { lambda, mu })
+        }
+        "neo_hookean" => {
+            let (lambda, mu) = read_moduli::<D>(table)?;
+            Model::NeoHookean(NeoHookean { lambda, mu })
+        }
+        _ => Model::Snow(read_snow::<D>(table)?),
+    };
+    Ok((
+        Material {
+            name: name.to_owned(),
+            density: table.number("density")?,
+            model,
+        },
+        stiffness,
+    ))
+}
+
+fn read_fluid(table: &Reader<'_>) -> Result<(Fluid, Stiffness), SceneError> {
+    let eos = match table.text("eos")? {
+        "linear_j" if table.has("gamma") => {
+            return Err(table.error_at_key("gamma", "\"gamma\" is for eos = \"tait\" only"));
+        }
+        "linear_j" => Eos::LinearJ,
+        _ => Eos::Tait {
+            gamma: table.opt_number("gamma").unwrap_or(7.0),
+        },
+    };
+    let stiffness = match (
+        table.opt_number("sound_speed"),
+        table.opt_number("bulk_modulus"),
+    ) {
+        _ if table.has("sound_speed") && table.has("bulk_modulus") => {
+            return Err(table.error_at_key(
+                "bulk_modulus",
+                "\"sound_speed\" and \"bulk_modulus\" say the same; give one",
+            ));
+        }
+        (Some(c), _) => Stiffness::SoundSpeed(c),
+        (_, Some(bulk)) => Stiffness::Bulk(bulk),
+        _ => Stiffness::Auto,
+    };
+    let fluid = Fluid {
+        eos,
+        bulk_modulus: 0.0,
+        viscosity: table.number("viscosity")?,
+        bulk_viscosity: table.number("bulk_viscosity")?,
+        tension: table.opt_number("tension").unwrap_or(f64::INFINITY),
+        jacobian_update: if table.text("jacobian_update")? == "det" {
+            JacobianUpdate::Determinant
+        } else {
+            JacobianUpdate::Trace
+        },
+    };
+    Ok((fluid, stiffness))
+}
+
+fn read_snow<const D: usize>(table: &Reader<'_>) -> Result<Snow, SceneError> {
+    let (lambda, mu) = read_moduli::<D>(table)?;
+    Ok(Snow {
+        lambda,
+        mu,
+        critical_compression: table.number("critical_compression")?,
+        critical_stretch: table.number("critical_stretch")?,
+        hardening: table.number("hardening")?,
+        hardening_range: table.vector("hardening_range")?,
+        plastic_jacobian_range: table.vector("plastic_jacobian_range")?,
+        hardening_from: if table.text("hardening_from")? == "previous" {
+            HardeningFrom::Previous
+        } else {
+            HardeningFrom::Updated
+        },
+    })
+}
+
+/// (λ, μ) from whichever pair is given.
+fn read_moduli<const D: usize>(table: &Reader<'_>) -> Result<(f64, f64), SceneError> {
+    let given: Vec<&str> = MODULI
+        .as_flattened()
+        .iter()
+        .copied()
+        .filter(|key| table.has(key))
+        .collect();
+    let pairs = || MODULI.map(|[a, b]| format!("{a} and {b}")).join("; or ");
+    let Some(pair) = MODULI
+        .iter()
+        .find(|pair| given.first().is_some_and(|key| pair.contains(key)))
+    else {
+        return Err(table
+            .error("this material has no moduli")
+            .hint(format!("give {}", pairs())));
+    };
+    if let Some(other) = given.iter().find(|key| !pair.contains(key)) {
+        return Err(table
+            .error_at_key(
+                other,
+                format!("\"{other}\" does not go with \"{}\"", given[0]),
+            )
+            .hint(format!("give {}", pairs())));
+    }
+    if let Some(missing) = pair.iter().find(|key| !table.has(key)) {
+        return Err(table.error_at_key(
+            given[0],
+            format!("\"{}\" needs \"{missing}\" beside it", given[0]),
+        ));
+    }
+    let (a, b) = (table.number(pair[0])?, table.number(pair[1])?);
+    let d = D as f64;
+    let (lambda, mu) = match pair[0] {
+        "youngs_modulus" => lame(a, b),
+        "bulk_modulus" => (a - 2.0 * b / d, b),
+        _ => (a, b),
+    };
+    if lambda + 2.0 * mu / d <= 0.0 {
+        return Err(table.error_at(
+            pair[0],
+            format!(
+                "these moduli have a bulk modulus of {:.4e} Pa; it must be above 0",
+                lambda + 2.0 * mu / d
+            ),
+        ));
+    }
+    Ok((lambda, mu))
+}
+
+fn read_body<const D: usize>(
+    index: usize,
+    table: &Reader<'_>,
+    materials: &[Material],
+    domain: Option<&Domain<D>>,
+    dx: f64,
+    file: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    warnings: &mut Vec<String>,
+) -> Result<Body<D>, SceneError> {
+    let name = table
+        .opt_text("name")
+        .map_or_else(|| format!("body-{index}"), str::to_owned);
+    let wanted = table.text("material")?;
+    let Some(material) = materials
+        .iter()
+        .position(|material| material.name == wanted)
+    else {
+        let names: Vec<&str> = materials
+            .iter()
+            .map(|material| material.name.as_str())
+            .collect();
+        let error = table.error_at(
+            "material",
+            format!("there is no material \"{}\"", super::shorten(wanted)),
+        );
+        return Err(match nearest(wanted, names.iter().copied()) {
+            Some(near) => error.hint(format!("did you mean \"{near}\"?")),
+            None => error.hint(format!("there are: {}", names.join(", "))),
+        });
+    };
+    let volume = match (
+        table.opt_number("volume"),
+        table.opt_number("particle_volume"),
+    ) {
+        (Some(_), Some(_)) => {
+            return Err(table.error_at_key(
+                "particle_volume",
+                "\"volume\" and \"particle_volume\" say the same; give one",
+            ));
+        }
+        (Some(volume), None) => Volume::Body(volume),
+        (None, Some(volume)) => Volume::Particle(volume),
+        (None, None) => Volume::Source,
+    };
+    let clip = domain.map_or(Bounds::EVERYTHING, |domain| Bounds {
+        min: domain.min,
+        max: domain.max,
+    });
+    let source = match (table.opt_table("shape"), table.opt_text("particles")) {
+        (Some(_), Some(_)) => return Err(table.error_at_key("particles", "a body has a \"shape\" or \"particles\", not both")),
+        (None, None) => return Err(table.error(format!("body \"{name}\" has no shape")).hint("add, for instance, shape = { box = { min = [0.0, 0.0], max = [1.0, 1.0] } }, or particles = \"start.csv\"")),
+        (Some(shape), None) => read_shape_source(&name, table, &shape, clip, dx)?,
+        (None, Some(path)) => Source::List(read_list(table, path, volume, &clip, file, warnings)?),
+    };
+    Ok(Body {
+        name,
+        material,
+        source,
+        velocity: table.vector("velocity")?,
+        gradient: read_gradient(table)?,
+        volume,
+    })
+}
+
+fn read_gradient<const D: usize>(table: &Reader<'_>) -> Result<[[f64; D]; D], SceneError> {
+    let mut gradient = [[0.0; D]; D];
+    if let Some(rows) = table.opt_rows::<D>("velocity_gradient") {
+        for (row, given) in gradient.iter_mut().zip(rows) {
+            *row = given;
+        }
+    }
+    // ω × r as a matrix.
+    let [x, y, z] = match table.opt_vector::<3>("spin") {
+        Some(spin) => spin,
+        None => [0.0, 0.0, table.number("spin")?],
+    };
+    let cross = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
+    for i in 0..D {
+        for j in 0..D {
+            gradient[i][j] += cross[i][j];
+        }
+    }
+    Ok(gradient)
+}
+
+fn read_shape_source<const D: usize>(
+    name: &str,
+    body: &Reader<'_>,
+    table: &Reader<'_>,
+    clip: Bounds<D>,
+    dx: f64,
+) -> Result<Source<D>, SceneError> {
+    let sampling = match body.text("sampling")? {
+        "lattice" => Sampling::Lattice,
+        "random" => Sampling::Random,
+        "poisson" => Sampling::Poisson,
+        _ => Sampling::Jittered,
+    };
+    let amounts: Vec<&str> = ["particles_per_cell", "spacing", "count"]
+        .into_iter()
+        .filter(|key| body.has(key))
+        .collect();
+    if let [first, second, ..] = amounts[..] {
+        return Err(body.error_at_key(
+            second,
+            format!("\"{first}\" and \"{second}\" say the same; give one"),
+        ));
+    }
+    let shape = read_shape(table, clip)?;
+    let region = Region::new(shape, clip);
+    if !(region.volume() > 0.0) {
+        let bounds = region.shape().bounds();
+        let error = body.error_at("shape", format!("body \"{name}\" lies outside the domain"));
+        return Err(match region.shape() {
+            Shape::HalfSpace { .. } => {
+                error.hint("move the point, or turn the normal round: it points out of the body")
+            }
+            _ => error.hint(format!(
+                "it reaches from {} to {}, the domain from {} to {}",
+                point(&bounds.min),
+                point(&bounds.max),
+                point(&clip.min),
+                point(&clip.max)
+            )),
+        });
+    }
+    let cells = region.volume() / dx.powi(D as i32);
+    let count = body.opt_integer("count").map(|count| count as usize);
+    if count.is_some() && !matches!(sampling, Sampling::Random | Sampling::Poisson) {
+        return Err(body.error_at_key(
+            "count",
+            format!(
+                "\"count\" is for sampling = \"random\" or \"poisson\", this body has \"{}\"",
+                sampling.name()
+            ),
+        ));
+    }
+    let per_cell = match (count, body.opt_number("particles_per_cell")) {
+        (Some(count), _) => count as f64 / cells,
+        (None, Some(per_cell)) => per_cell,
+        (None, None) => f64::from(1 << D),
+    };
+    let spacing = body
+        .opt_number("spacing")
+        .unwrap_or(dx / per_cell.powf(1.0 / D as f64));
+    if region.volume() / spacing.powi(D as i32) < 0.5 {
+        let key = amounts.first().copied().unwrap_or("shape");
+        let error = body.error_at(
+            key,
+            format!(
+                "body \"{name}\" comes to no particle: its volume is {:.3e}, a particle's {:.3e}",
+                region.volume(),
+                spacing.powi(D as i32)
+            ),
+        );
+        return Err(error.hint("make the body larger, or dx or spacing smaller"));
+    }
+    Ok(Source::Shape {
+        region,
+        spacing,
+        count,
+        sampling,
+    })
+}
+
+fn point(p: &[f64]) -> String {
+    let parts: Vec<String> = p.iter().map(|x| tidy(*x).to_string()).collect();
+    format!("({})", parts.join(", "))
+}
+
+fn read_shape<const D: usize>(table: &Reader<'_>, clip: Bounds<D>) -> Result<Shape<D>, SceneError> {
+    let kinds: Vec<&str> = ["box", "ball", "half_space", "polygon"]
+        .into_iter()
+        .filter(|kind| table.has(kind))
+        .collect();
+    let kind = match kinds[..] {
+        [kind] => kind,
+        [] => {
+            return Err(table
+                .error("this shape is empty")
+                .hint("give one of: box, ball, half_space, polygon"));
+        }
+        [_, second, ..] => {
+            return Err(table
+                .error_at_key(second, "a shape is one of box, ball, half_space, polygon")
+                .hint("make a second body of it"));
+        }
+    };
+    let Some(inner) = table.opt_table(kind) else {
+        return Err(table.error_at(kind, format!("\"{kind}\" must be a table")));
+    };
+    match kind {
+        "box" => {
+            let (min, max): ([f64; D], [f64; D]) = (inner.vector("min")?, inner.vector("max")?);
+            if let Some(i) = (0..D).find(|&i| !(max[i] > min[i])) {
+                return Err(inner.error_at(
+                    "max",
+                    format!(
+                        "the box has no extent along {}: max {} is not above min {}",
+                        AXES[i], max[i], min[i]
+                    ),
+                ));
+            }
+            Ok(Shape::Box { min, max })
+        }
+        "ball" => Ok(Shape::Ball {
+            center: inner.vector("center")?,
+            radius: inner.number("radius")?,
+        }),
+        "half_space" => {
+            let normal: [f64; D] = inner.vector("normal")?;
+            let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+            if !(length > 0.0 && length.is_finite()) {
+                return Err(inner.error_at("normal", "the normal has no direction"));
+            }
+            if !clip.volume().is_finite() {
+                return Err(
+                    table.error_at_key("half_space", "a half-space needs a [domain] to end at")
+                );
+            }
+            Ok(Shape::HalfSpace {
+                point: inner.vector("point")?,
+                normal: normal.map(|n| n / length),
+            })
+        }
+        _ => {
+            if D == 3 {
+                return Err(table
+                    .error_at_key("polygon", "polygons are for 2D only")
+                    .hint("this scene has dimension = 3"));
+            }
+            let points = inner.opt_rows::<D>("points").unwrap_or_default();
+            let bounds = Shape::Polygon {
+                points: points.clone(),
+            }
+            .bounds();
+            if points.len() < 3 || !(area(&points).abs() > 1e-12 * bounds.volume()) {
+                return Err(inner.error_at(
+                    "points",
+                    format!("a polygon of {} points in a line has no area", points.len()),
+                ));
+            }
+            /// Corners up to which sides are tested against each other.
+            const TESTED: usize = 4000;
+            if points.len() <= TESTED
+                && let Some((i, j)) = crossing(&points)
+            {
+                return Err(inner.error_at("points", format!("the polygon crosses itself: the sides from point {i} and from point {j} (from 0)")));
+            }
+            Ok(Shape::Polygon { points })
+        }
+    }
+}
+
+fn read_list<const D: usize>(
+    table: &Reader<'_>,
+    path: &str,
+    volume: Volume,
+    clip: &Bounds<D>,
+    file: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    warnings: &mut Vec<String>,
+) -> Result<ParticleList<D>, SceneError> {
+    for key in ["particles_per_cell", "spacing", "count"] {
+        if table.has(key) {
+            return Err(table.error_at_key(
+                key,
+                format!("\"{key}\" is for shapes; a particle list has the particles it has"),
+            ));
+        }
+    }
+    let bytes = file(path).map_err(|reason| {
+        table
+            .error_at(
+                "particles",
+                format!("cannot read \"{}\": {reason}", super::shorten(path)),
+            )
+            .hint("particle lists are found from the scene's folder")
+    })?;
+    let mut list = if path.ends_with(".csv") {
+        match core::str::from_utf8(&bytes) {
+            Ok(text) => crate::particle_list::parse_csv(text, path)?,
+            Err(error) => {
+                return Err(SceneError::of_file(
+                    path,
+                    format!("this is not text: byte {} is no UTF-8", error.valid_up_to()),
+                ));
+            }
+        }
+    } else {
+        return Err(table.error_at("particles", "a particle list is a .csv or .npz file"));
+    };
+    if list.position.is_empty() {
+        return Err(SceneError::of_file(
+            path,
+            "the particle list has no particles",
+        ));
+    }
+    if let Some((row, p)) = list
+        .position
+        .iter()
+        .enumerate()
+        .find(|(_, p)| !clip.contains(p))
+    {
+        let outside = list.position.iter().filter(|p| !clip.contains(p)).count();
+        let error = table.error_at("particles", format!("particle {row} (from 0) of \"{path}\" at {} lies outside the domain, {outside} of {} do", point(p), list.position.len()));
+        return Err(error.hint(format!(
+            "the domain reaches from {} to {}",
+            point(&clip.min),
+            point(&clip.max)
+        )));
+    }
+    if volume == Volume::Source && list.volume.is_empty() && list.mass.is_empty() {
+        return Err(table
+            .error_at(
+                "particles",
+                format!("\"{path}\" has neither volume nor mass"),
+            )
+            .hint("add a column, or particle_volume = .. to the body"));
+    }
+    warnings.append(&mut list.warnings);
+    Ok(list)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_dx_that_fits() {
+        assert_eq!(fitting_dx(&[4.0, 2.0], 0.03), Some(4.0 / 134.0));
+        assert_eq!(fitting_dx(&[1.0, 0.75], 0.26), Some(0.25));
+        assert_eq!(fitting_dx(&[1.0, core::f64::consts::SQRT_2], 0.01), None);
+        assert!(
+            is_whole(4.0 / 0.02) && is_whole(0.3 / 0.1) && !is_whole(4.0 / 0.03) && !is_whole(0.01)
+        );
+    }
+}

@@ -1,0 +1,162 @@
+//! Typed access to a checked table. Kinds and defaults were seen to by `check`: what is absent here
+//! has no default.
+
+use super::document::{Node, Sources, Span, Table, Value};
+use crate::error::SceneError;
+
+/// A table of the scene, with its place.
+#[derive(Clone, Copy)]
+pub(crate) struct Reader<'a> {
+    sources: &'a Sources,
+    table: &'a Table,
+    span: Span,
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(sources: &'a Sources, table: &'a Table, span: Span) -> Self {
+        Self {
+            sources,
+            table,
+            span,
+        }
+    }
+
+    pub(crate) fn sources(&self) -> &'a Sources {
+        self.sources
+    }
+
+    /// An error at the table itself.
+    pub(crate) fn error(&self, message: impl Into<String>) -> SceneError {
+        self.sources.error(self.span, message)
+    }
+
+    /// An error at the value of `key`, or at the table if that is absent.
+    pub(crate) fn error_at(&self, key: &str, message: impl Into<String>) -> SceneError {
+        self.sources.error(
+            self.table.get(key).map_or(self.span, |node| node.span),
+            message,
+        )
+    }
+
+    /// An error at `key` itself.
+    pub(crate) fn error_at_key(&self, key: &str, message: impl Into<String>) -> SceneError {
+        self.sources.error(
+            self.table
+                .entry(key)
+                .map_or(self.span, |entry| entry.key_span),
+            message,
+        )
+    }
+
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.table.get(key).is_some()
+    }
+
+    fn required<T>(&self, key: &str, value: Option<T>) -> Result<T, SceneError> {
+        value.ok_or_else(|| self.error(format!("there is no usable \"{key}\"")))
+    }
+
+    pub(crate) fn opt_text(&self, key: &str) -> Option<&'a str> {
+        match &self.table.get(key)?.value {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn text(&self, key: &str) -> Result<&'a str, SceneError> {
+        self.required(key, self.opt_text(key))
+    }
+
+    pub(crate) fn opt_number(&self, key: &str) -> Option<f64> {
+        self.table.get(key)?.value.as_number()
+    }
+
+    pub(crate) fn number(&self, key: &str) -> Result<f64, SceneError> {
+        self.required(key, self.opt_number(key))
+    }
+
+    pub(crate) fn opt_integer(&self, key: &str) -> Option<u64> {
+        match self.table.get(key)?.value {
+            Value::Integer(number) => u64::try_from(number).ok(),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn integer(&self, key: &str) -> Result<u64, SceneError> {
+        self.required(key, self.opt_integer(key))
+    }
+
+    pub(crate) fn opt_vector<const D: usize>(&self, key: &str) -> Option<[f64; D]> {
+        vector(self.table.get(key)?)
+    }
+
+    pub(crate) fn vector<const D: usize>(&self, key: &str) -> Result<[f64; D], SceneError> {
+        self.required(key, self.opt_vector(key))
+    }
+
+    /// Rows of D numbers.
+    pub(crate) fn opt_rows<const D: usize>(&self, key: &str) -> Option<Vec<[f64; D]>> {
+        match &self.table.get(key)?.value {
+            Value::List(rows) => rows.iter().map(vector).collect(),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn opt_words(&self, key: &str) -> Option<Vec<String>> {
+        match &self.table.get(key)?.value {
+            Value::List(list) => list
+                .iter()
+                .map(|node| match &node.value {
+                    Value::Text(text) => Some(text.clone()),
+                    _ => None,
+                })
+                .collect(),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn opt_color(&self, key: &str) -> Option<[u8; 3]> {
+        super::check::color(self.opt_text(key)?)
+    }
+
+    pub(crate) fn opt_table(&self, key: &str) -> Option<Reader<'a>> {
+        let entry = self.table.entry(key)?;
+        match &entry.node.value {
+            Value::Table(table) => Some(Reader::new(self.sources, table, entry.key_span)),
+            _ => None,
+        }
+    }
+
+    /// The tables in a table or list, with their keys; elements of a list have the empty key.
+    pub(crate) fn tables(&self, key: &str) -> Vec<(&'a str, Reader<'a>)> {
+        match self.table.get(key).map(|node| &node.value) {
+            Some(Value::Table(table)) => table
+                .entries
+                .iter()
+                .filter_map(|entry| match &entry.node.value {
+                    Value::Table(table) => Some((
+                        entry.key.as_str(),
+                        Reader::new(self.sources, table, entry.key_span),
+                    )),
+                    _ => None,
+                })
+                .collect(),
+            Some(Value::List(list)) => list
+                .iter()
+                .filter_map(|node| match &node.value {
+                    Value::Table(table) => Some(("", Reader::new(self.sources, table, node.span))),
+                    _ => None,
+                })
+                .collect(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+fn vector<const D: usize>(node: &Node) -> Option<[f64; D]> {
+    let Value::List(list) = &node.value else {
+        return None;
+    };
+    let numbers: Option<Vec<f64>> = list.iter().map(|node| node.value.as_number()).collect();
+    numbers?.try_into().ok()
+}

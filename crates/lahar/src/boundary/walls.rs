@@ -1,0 +1,145 @@
+//! The domain's walls as the nodes see them.
+
+use super::{Contact, Domain, Sides, WallStyle};
+use crate::error::SetupError;
+use crate::math::{Scalar, Vector};
+
+/// How far, in cells, a side may be from a whole number of them.
+const WHOLE_CELLS_TOLERANCE: f64 = 1e-6;
+
+/// One end of an axis in node indices.
+#[derive(Clone, Copy, Debug)]
+struct End {
+    /// The outermost node that is not inside: at and beyond it the contact acts.
+    node: i64,
+    contact: Contact,
+}
+
+/// The walls of a domain in node indices; nothing at all when unbounded.
+#[derive(Clone, Debug)]
+pub(crate) struct Walls<const D: usize> {
+    low: [Option<End>; D],
+    high: [Option<End>; D],
+    /// Cells on a periodic axis.
+    pub(crate) period: [Option<i64>; D],
+    /// Where particles may be, in cells from the origin: (lowest, highest) if a wall on its plane
+    /// holds them there.
+    pub(crate) hold: [(Option<f64>, Option<f64>); D],
+    /// Beyond which particles are removed, in cells from the origin.
+    pub(crate) open: [(Option<f64>, Option<f64>); D],
+}
+
+impl<const D: usize> Walls<D> {
+    pub(crate) fn unbounded() -> Self {
+        Self {
+            low: [None; D],
+            high: [None; D],
+            period: [None; D],
+            hold: [(None, None); D],
+            open: [(None, None); D],
+        }
+    }
+
+    /// The walls of `domain` on nodes `dx` apart.
+    ///
+    /// # Errors
+    /// If a side is empty, or is not a whole number of cells.
+    pub(crate) fn new(domain: &Domain<D>, dx: f64) -> Result<Self, SetupError> {
+        let mut walls = Self::unbounded();
+        for axis in 0..D {
+            let length = domain.max[axis] - domain.min[axis];
+            if !(length > 0.0 && length.is_finite()) {
+                return Err(SetupError {
+                    key: "domain.max".into(),
+                    message: format!("must be above domain.min on axis {}", ["x", "y", "z"][axis]),
+                });
+            }
+            let cells = (length / dx).round();
+            if (length / dx - cells).abs() > WHOLE_CELLS_TOLERANCE * cells.max(1.0) || cells < 1.0 {
+                return Err(SetupError {
+                    key: "dx".into(),
+                    message: format!(
+                        "the domain's side along {} is {length} m, {:.4} cells of {dx} m: a side must be a whole number of \
+                         cells; the nearest dx is {}",
+                        ["x", "y", "z"][axis],
+                        length / dx,
+                        length / cells.max(1.0)
+                    ),
+                });
+            }
+            let cells = cells as i64;
+            match domain.sides[axis] {
+                Sides::Periodic => walls.period[axis] = Some(cells),
+                Sides::Walls { low, high } => {
+                    let (low_node, high_node) = match domain.style {
+                        WallStyle::Plane => (0, cells),
+                        // Taichi's examples: i < padding, i > n − padding.
+                        WallStyle::Nodes { padding } => {
+                            (i64::from(padding) - 1, cells - i64::from(padding) + 1)
+                        }
+                    };
+                    let on_plane = domain.style == WallStyle::Plane;
+                    if low == Contact::Open {
+                        walls.open[axis].0 = Some(0.0);
+                    } else {
+                        walls.low[axis] = Some(End {
+                            node: low_node,
+                            contact: low,
+                        });
+                        walls.hold[axis].0 = on_plane.then_some(0.0);
+                    }
+                    if high == Contact::Open {
+                        walls.open[axis].1 = Some(cells as f64);
+                    } else {
+                        walls.high[axis] = Some(End {
+                            node: high_node,
+                            contact: high,
+                        });
+                        walls.hold[axis].1 = on_plane.then_some(cells as f64);
+                    }
+                }
+            }
+        }
+        Ok(walls)
+    }
+
+    /// Whether any node of `first .. first + edge` on each axis touches a wall.
+    pub(crate) fn touch(&self, first: [i64; D], edge: usize) -> bool {
+        (0..D).any(|axis| {
+            self.low[axis].is_some_and(|end| first[axis] <= end.node)
+                || self.high[axis].is_some_and(|end| first[axis] + edge as i64 > end.node)
+        })
+    }
+
+    /// The velocity of node `node` after the walls have acted on it, axis after axis.
+    #[inline(always)]
+    pub(crate) fn constrain<T: Scalar>(
+        &self,
+        mut velocity: Vector<T, D>,
+        node: [i64; D],
+    ) -> Vector<T, D> {
+        for axis in 0..D {
+            if let Some(end) = self.low[axis]
+                && node[axis] <= end.node
+            {
+                velocity = end.contact.constrain(velocity, axis, 1.0);
+            }
+            if let Some(end) = self.high[axis]
+                && node[axis] >= end.node
+            {
+                velocity = end.contact.constrain(velocity, axis, -1.0);
+            }
+        }
+        velocity
+    }
+
+    /// `node` on its periodic axes brought into 0 .. period.
+    pub(crate) fn canonical(&self, mut node: [i64; D]) -> [i64; D] {
+        for axis in 0..D {
+            if let Some(period) = self.period[axis] {
+                node[axis] = node[axis].rem_euclid(period);
+            }
+        }
+        node
+    }
+}

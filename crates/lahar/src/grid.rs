@@ -1,0 +1,426 @@
+//! The grid: blocks of 64 nodes that exist only where particles are, and the tiles that the work is
+//! done on.
+//!
+//! A *tile* is a block with its halo: all nodes that the block's particles touch, even after they
+//! have drifted by one cell. P2G adds to the tiles, each by one thread; the grid update adds up what
+//! the tiles say of each block's nodes; G2P reads a copy of a tile's worth of nodes.
+//!
+//! ```text
+//!            tile of block b (quadratic, edge 4):   nodes −1 .. 7
+//!   −1 | 0  1  2  3 | 4  5  6          what lies outside 0..4 belongs to its neighbours
+//! ```
+//!
+//! Each node sums its contributions in ascending order of the contributing blocks' coordinates.
+//! That order is the definition; it depends neither on threads nor on where the scene lies.
+//!
+//! A node is a *quad* of four numbers: `[p_x, p_y, p_z, m]` in 3D, `[p_x, p_y, 0, m]` in 2D; after
+//! the update velocity stands where momentum was. Schemes that need the velocity before forces have
+//! a second plane of quads.
+
+use crate::boundary::walls::Walls;
+use crate::dispatch::on_level;
+use crate::material::IsaToken;
+use crate::math::{Lanes, Vector};
+use crate::parallel;
+use crate::store::{Group, block_edge};
+
+/// Numbers a node and plane.
+pub(crate) const QUAD: usize = 4;
+
+/// Nodes a block, in 2D and 3D.
+pub(crate) const BLOCK_NODES: usize = 64;
+
+/// Nodes behind a tile, so that the row of four at its very end stays inside.
+const TILE_PADDING: usize = 4;
+
+/// A part of a block that a tile covers: node `l` of the block (on each axis, `low ≤ l < high`) is
+/// node `l + shift` of the tile.
+#[derive(Clone, Copy, Debug)]
+struct Link<const D: usize> {
+    block: u32,
+    tile: u32,
+    shift: [i16; D],
+    low: [u8; D],
+    high: [u8; D],
+}
+
+/// Forces on nodes that are not stress: gravity and the hand.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NodeForces<T, const D: usize> {
+    pub(crate) dt: T,
+    /// Δt g.
+    pub(crate) gravity_impulse: Vector<T, D>,
+    pub(crate) pointer: Option<NodePointer<D>>,
+}
+
+/// [`crate::simulation::Pointer`] in cells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NodePointer<const D: usize> {
+    pub(crate) centre: [f64; D],
+    pub(crate) radius: f64,
+    pub(crate) action: crate::simulation::PointerAction,
+}
+
+/// Blocks, tiles, and how they hang together.
+pub(crate) struct Grid<T, const D: usize> {
+    /// Planes of quads: 1, or 2 if the scheme needs velocity before forces.
+    planes: usize,
+    /// Nodes along the edge of a tile.
+    tile_edge: usize,
+    /// Blocks that particles are in, ascending; each has a tile.
+    tile_blocks: Vec<[i32; D]>,
+    /// Blocks that have nodes, ascending.
+    blocks: Vec<[i32; D]>,
+    /// By block, then ascending coordinates of the tile's block.
+    links: Vec<Link<D>>,
+    links_of_block: Vec<u32>,
+    /// Indices into `links` by tile.
+    links_by_tile: Vec<u32>,
+    links_of_tile: Vec<u32>,
+    tiles: Vec<T>,
+    nodes: Vec<T>,
+}
+
+impl<T: Lanes, const D: usize> Grid<T, D> {
+    /// An empty grid for a kernel of `kernel_nodes` nodes an axis.
+    pub(crate) fn new(kernel_nodes: usize, planes: usize) -> Self {
+        Self {
+            planes,
+            tile_edge: tile_edge::<D>(kernel_nodes),
+            tile_blocks: Vec::new(),
+            blocks: Vec::new(),
+            links: Vec::new(),
+            links_of_block: vec![0],
+            links_by_tile: Vec::new(),
+            links_of_tile: vec![0],
+            tiles: Vec::new(),
+            nodes: Vec::new(),
+        }
+    }
+
+    pub(crate) fn block_count(&self) -> usize {
+        self.blocks.len()
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        size_of::<T>() * (self.tiles.capacity() + self.nodes.capacity())
+            + size_of::<Link<D>>() * self.links.capacity()
+            + 4 * (self.links_by_tile.capacity()
+                + self.links_of_block.capacity()
+                + self.links_of_tile.capacity())
+            + size_of::<[i32; D]>() * (self.blocks.capacity() + self.tile_blocks.capacity())
+    }
+
+    /// Numbers of one plane of a tile, padding included.
+    pub(crate) fn tile_plane(&self) -> usize {
+        tile_plane::<D>(self.tile_edge)
+    }
+
+    /// Numbers of a tile, all planes.
+    pub(crate) fn tile_len(&self) -> usize {
+        self.tile_plane() * self.planes
+    }
+
+    fn block_len(&self) -> usize {
+        BLOCK_NODES * QUAD * self.planes
+    }
+
+    /// The tiles, to scatter to.
+    pub(crate) fn tiles_mut(&mut self) -> &mut [T] {
+        &mut self.tiles
+    }
+
+    /// Makes blocks and tiles for where the particles of `groups` are now, and tells their runs
+    /// which tile is theirs.
+    pub(crate) fn rebuild(&mut self, groups: &mut [Group<T, D>], walls: &Walls<D>) {
+        self.tile_blocks.clear();
+        for group in groups.iter() {
+            self.tile_blocks
+                .extend(group.runs.iter().map(|run| run.block));
+        }
+        self.tile_blocks.sort_unstable();
+        self.tile_blocks.dedup();
+        let mut taken = vec![false; self.tile_blocks.len()];
+        for group in groups {
+            let mut tile = 0;
+            for run in &mut group.runs {
+                while self.tile_blocks[tile] != run.block {
+                    tile += 1;
+                }
+                run.tile = tile as u32;
+                run.first = !core::mem::replace(&mut taken[tile], true);
+            }
+        }
+        self.link(walls);
+        // Stale numbers are never read: a tile's first scatter clears it, a block's update writes it.
+        self.tiles
+            .resize(self.tile_blocks.len() * self.tile_len(), T::default());
+        self.nodes
+            .resize(self.blocks.len() * self.block_len(), T::default());
+    }
+
+    /// Finds which blocks each tile covers.
+    fn link(&mut self, walls: &Walls<D>) {
+        let mut found: Vec<([i32; D], Link<D>)> =
+            Vec::with_capacity(self.tile_blocks.len() * 3_usize.pow(D as u32));
+        for (tile, &block) in self.tile_blocks.iter().enumerate() {
+            let pieces: [Vec<Piece>; D] = core::array::from_fn(|axis| {
+                axis_pieces::<D>(block[axis], self.tile_edge, walls.period[axis])
+            });
+            let mut choice = [0; D];
+            loop {
+                let piece: [Piece; D] = core::array::from_fn(|axis| pieces[axis][choice[axis]]);
+                found.push((
+                    piece.map(|p| p.block),
+                    Link {
+                        block: 0,
+                        tile: tile as u32,
+                        shift: piece.map(|p| p.shift),
+                        low: piece.map(|p| p.low),
+                        high: piece.map(|p| p.high),
+                    },
+                ));
+                let Some(axis) = (0..D)
+                    .rev()
+                    .find(|&axis| choice[axis] + 1 < pieces[axis].len())
+                else {
+                    break;
+                };
+                choice[axis] += 1;
+                choice[axis + 1..].fill(0);
+            }
+        }
+        // Within a block, ascending coordinates of the tile's block (or of its periodic image) are
+        // descending shifts.
+        found.sort_unstable_by_key(|(block, link)| (*block, link.shift.map(|shift| -shift)));
+
+        self.blocks.clear();
+        self.links.clear();
+        self.links_of_block.clear();
+        let mut of_tile = vec![0_u32; self.tile_blocks.len() + 1];
+        for (block, mut link) in found {
+            if self.blocks.last() != Some(&block) {
+                self.links_of_block.push(self.links.len() as u32);
+                self.blocks.push(block);
+            }
+            link.block = self.blocks.len() as u32 - 1;
+            of_tile[link.tile as usize + 1] += 1;
+            self.links.push(link);
+        }
+        self.links_of_block.push(self.links.len() as u32);
+        for tile in 1..of_tile.len() {
+            of_tile[tile] += of_tile[tile - 1];
+        }
+        let mut next = of_tile.clone();
+        self.links_by_tile.clear();
+        self.links_by_tile.resize(self.links.len(), 0);
+        for (index, link) in self.links.iter().enumerate() {
+            let place = &mut next[link.tile as usize];
+            self.links_by_tile[*place as usize] = index as u32;
+            *place += 1;
+        }
+        self.links_of_tile = of_tile;
+    }
+
+    /// Sums the tiles' contributions and makes velocity of momentum: v = p/m + Δt g, then the walls.
+    pub(crate) fn update(&mut self, isa: IsaToken, forces: &NodeForces<T, D>, walls: &Walls<D>) {
+        let mut nodes = core::mem::take(&mut self.nodes);
+        let block_len = self.block_len();
+        let grain = parallel::grain(self.blocks.len(), 16);
+        let this = &*self;
+        parallel::for_chunks(&mut nodes, block_len, 0, grain, &|first, piece| {
+            let _flush = crate::float_mode::FlushToZero::enter();
+            on_level!(isa.0, _simd => {
+                for (index, block) in piece.chunks_exact_mut(block_len).enumerate() {
+                    this.gather_tiles(first + index, block);
+                    this.update_block(first + index, block, forces, walls);
+                }
+            });
+        });
+        self.nodes = nodes;
+    }
+
+    /// (1), (2): the sums over particles that the tiles have begun.
+    #[inline(always)]
+    fn gather_tiles(&self, block: usize, nodes: &mut [T]) {
+        nodes.fill(T::default());
+        let range = self.links_of_block[block] as usize..self.links_of_block[block + 1] as usize;
+        for link in &self.links[range] {
+            let tile = &self.tiles[link.tile as usize * self.tile_len()..][..self.tile_len()];
+            for plane in 0..self.planes {
+                let from = &tile[plane * self.tile_plane()..];
+                let to = &mut nodes[plane * BLOCK_NODES * QUAD..];
+                self.rows(link, |block_at, tile_at, len| {
+                    for (sum, &part) in to[block_at..block_at + len]
+                        .iter_mut()
+                        .zip(&from[tile_at..tile_at + len])
+                    {
+                        *sum += part;
+                    }
+                });
+            }
+        }
+    }
+
+    /// Calls `row(place in the block, place in the tile, numbers)` for each run of nodes of `link`.
+    #[inline(always)]
+    fn rows(&self, link: &Link<D>, mut row: impl FnMut(usize, usize, usize)) {
+        let edge = block_edge(D);
+        let last = D - 1;
+        let at = |axis: usize, node: usize| (node as isize + link.shift[axis] as isize) as usize;
+        let low = link.low.map(usize::from);
+        let high = link.high.map(usize::from);
+        let len = (high[last] - low[last]) * QUAD;
+        for i in low[0]..high[0] {
+            if D == 2 {
+                let block_row = i * edge + low[1];
+                let tile_row = at(0, i) * self.tile_edge + at(1, low[1]);
+                row(block_row * QUAD, tile_row * QUAD, len);
+            } else {
+                for j in low[1]..high[1] {
+                    let block_row = (i * edge + j) * edge + low[last];
+                    let tile_row = (at(0, i) * self.tile_edge + at(1, j)) * self.tile_edge
+                        + at(last, low[last]);
+                    row(block_row * QUAD, tile_row * QUAD, len);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn update_block(
+        &self,
+        block: usize,
+        nodes: &mut [T],
+        forces: &NodeForces<T, D>,
+        walls: &Walls<D>,
+    ) {
+        let edge = block_edge(D);
+        let first: [i64; D] = self.blocks[block].map(|b| i64::from(b) * edge as i64);
+        let walled = walls.touch(first, edge);
+        let (momentum, impulse) = nodes.split_at_mut(BLOCK_NODES * QUAD);
+        for index in 0..BLOCK_NODES {
+            let quad = &mut momentum[index * QUAD..(index + 1) * QUAD];
+            let mass = quad[3];
+            if mass <= T::default() {
+                continue;
+            }
+            let per_mass = T::from_f64(1.0) / mass;
+            let before = Vector::<T, D>::from_fn(|axis| quad[axis] * per_mass);
+            let mut velocity = before;
+            if self.planes == 2 {
+                velocity += Vector::from_fn(|axis| impulse[index * QUAD + axis] * per_mass);
+            }
+            velocity += forces.gravity_impulse;
+            if walled || forces.pointer.is_some() {
+                let node =
+                    core::array::from_fn(|axis| first[axis] + axis_index::<D>(index, axis) as i64);
+                if let Some(pointer) = &forces.pointer {
+                    velocity = pointer.act(velocity, node, forces.dt);
+                }
+                if walled {
+                    velocity = walls.constrain(velocity, node);
+                }
+            }
+            for axis in 0..D {
+                quad[axis] = velocity[axis];
+                if self.planes == 2 {
+                    impulse[index * QUAD + axis] = velocity[axis] - before[axis];
+                }
+            }
+        }
+    }
+
+    /// Copies the nodes that tile `tile` covers.
+    #[inline(always)]
+    pub(crate) fn load_tile(&self, tile: usize, out: &mut [T]) {
+        let range = self.links_of_tile[tile] as usize..self.links_of_tile[tile + 1] as usize;
+        for &link in &self.links_by_tile[range] {
+            let link = &self.links[link as usize];
+            let block = &self.nodes[link.block as usize * self.block_len()..][..self.block_len()];
+            for plane in 0..self.planes {
+                let from = &block[plane * BLOCK_NODES * QUAD..];
+                let to = &mut out[plane * self.tile_plane()..];
+                self.rows(link, |block_at, tile_at, len| {
+                    to[tile_at..tile_at + len].copy_from_slice(&from[block_at..block_at + len]);
+                });
+            }
+        }
+    }
+
+    /// `f(sum, lane)` over the nodes' sums of plane 0, before an update has run: for gauges.
+    pub(crate) fn sum_nodes(
+        &mut self,
+        isa: IsaToken,
+        lane: usize,
+        f: impl Fn(f64) -> f64 + Sync,
+    ) -> f64 {
+        let mut nodes = core::mem::take(&mut self.nodes);
+        let block_len = self.block_len();
+        let mut total = 0.0;
+        for (block, nodes) in nodes.chunks_exact_mut(block_len).enumerate() {
+            on_level!(isa.0, _simd => self.gather_tiles(block, nodes));
+            for quad in nodes[..BLOCK_NODES * QUAD].chunks_exact(QUAD) {
+                total += f(quad[lane].to_f64());
+            }
+        }
+        self.nodes = nodes;
+        total
+    }
+}
+
+/// Index of a block's node on one axis.
+#[inline(always)]
+const fn axis_index<const D: usize>(index: usize, axis: usize) -> usize {
+    let edge = block_edge(D);
+    match D - 1 - axis {
+        0 => index % edge,
+        1 => index / edge % edge,
+        _ => index / (edge * edge),
+    }
+}
+
+/// Nodes along a tile: the block, one cell of drift on either side, and the kernel's reach.
+pub(crate) const fn tile_edge<const D: usize>(kernel_nodes: usize) -> usize {
+    block_edge(D) + 2 + (kernel_nodes - 1)
+}
+
+/// Numbers of one plane of a tile with that edge.
+pub(crate) const fn tile_plane<const D: usize>(tile_edge: usize) -> usize {
+    (tile_edge.pow(D as u32) + TILE_PADDING) * QUAD
+}
+
+/// The part of a tile's axis that lies in one block.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    block: i32,
+    shift: i16,
+    low: u8,
+    high: u8,
+}
+
+/// Cuts the nodes that a tile covers on one axis into blocks, wrapped if the axis is periodic.
+fn axis_pieces<const D: usize>(block: i32, tile_edge: usize, period: Option<i64>) -> Vec<Piece> {
+    let edge = block_edge(D) as i64;
+    let first = edge * i64::from(block) - 1;
+    let mut pieces: Vec<Piece> = Vec::with_capacity(4);
+    for tile_node in 0..tile_edge as i64 {
+        let mut node = first + tile_node;
+        if let Some(period) = period {
+            node = node.rem_euclid(period);
+        }
+        let in_block = node.div_euclid(edge) as i32;
+        let local = node.rem_euclid(edge);
+        let shift = (tile_node - local) as i16;
+        match pieces.last_mut() {
+            Some(last) if last.block == in_block && last.shift == shift => last.high += 1,
+            _ => pieces.push(Piece {
+                block: in_block,
+                shift,
+                low: local as u8,
+                high: local as u8 + 1,
+            }),
+        }
+    }
+    pieces
+}

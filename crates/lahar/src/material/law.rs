@@ -1,0 +1,242 @@
+//! A model as the engine runs it: on columns of storage, a chunk of particles at a time, compiled
+//! for the instruction set in use.
+//!
+//! This is the seam between the solver and the laws. It is dynamic (one call a chunk), so that the
+//! code is a sum of laws and transfers and not their product, and so that laws from outside the
+//! crate run as fast as ours.
+
+use super::{ConstitutiveModel, Model, Strain};
+use crate::dispatch::on_level;
+use crate::math::{Lanes, Matrix, Real};
+use fearless_simd::{Level, Simd};
+
+/// Particles worked on between two looks at the tile.
+pub(crate) const CHUNK: usize = 32;
+
+/// The strain and velocity gradient of one particle, and what its law makes of it, in f64.
+#[derive(Clone, Debug)]
+pub struct ParticleState<const D: usize> {
+    /// J.
+    pub jacobian: f64,
+    /// F, `[i][j]`.
+    pub deformation_gradient: [[f64; D]; D],
+    /// J_P.
+    pub plastic_jacobian: f64,
+    /// Φ \[Pa\].
+    pub energy_density: f64,
+    /// −tr σ/d, σ the Cauchy stress \[Pa\].
+    pub pressure: f64,
+}
+
+/// An instruction set as laws get it.
+#[derive(Clone, Copy, Debug)]
+pub struct IsaToken(pub(crate) Level);
+
+/// A law on storage. Made from a [`ConstitutiveModel`] by [`law`]; not to be implemented by hand.
+pub trait Law<T: Lanes, const D: usize>: Send + Sync {
+    /// Columns of strain a particle.
+    fn strain_columns(&self) -> usize;
+    /// Writes Kirchhoff stress of particles `start .. start + count` (at most a chunk):
+    /// `out[(j·D + i)·CHUNK + p]` = τ_ij \[Pa\].
+    fn kirchhoff_stress(
+        &self,
+        isa: IsaToken,
+        strain: &[Vec<T>],
+        affine: &[Vec<T>],
+        start: usize,
+        count: usize,
+        out: &mut [T],
+    );
+    /// Advances the strain of particles `start .. start + count` by Δt ∂v/∂x, laid out as
+    /// `increment[(j·D + i)·CHUNK + p]`, and returns the largest wave modulus \[Pa\]; not a number if any is.
+    fn advance(
+        &self,
+        isa: IsaToken,
+        strain: &mut [&mut [T]],
+        start: usize,
+        count: usize,
+        increment: &[T],
+    ) -> T;
+    /// The largest wave modulus \[Pa\] of `count` particles.
+    fn wave_modulus(&self, strain: &[Vec<T>], count: usize) -> f64;
+    /// Viscosity for the time step \[Pa s\].
+    fn viscosity(&self) -> f64;
+    /// Strain columns for a particle that starts with the deformation gradient `f`.
+    fn start(&self, f: [[f64; D]; D]) -> Vec<f64>;
+    /// What the columns mean.
+    fn describe(&self, strain: &[f64], velocity_gradient: [[f64; D]; D]) -> ParticleState<D>;
+}
+
+/// The law of a built-in model.
+pub(crate) fn built_in<T: Lanes, const D: usize>(model: &Model) -> Box<dyn Law<T, D>> {
+    match *model {
+        Model::Dust(model) => law(model),
+        Model::Fluid(model) => law(model),
+        Model::Corotated(model) => law(model),
+        Model::NeoHookean(model) => law(model),
+        Model::Snow(model) => law(model),
+    }
+}
+
+/// The law of any model, your own included; see [`crate::Simulation::with_laws`].
+pub fn law<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static>(
+    model: M,
+) -> Box<dyn Law<T, D>> {
+    Box::new(Compiled(model))
+}
+
+struct Compiled<M>(M);
+
+/// A register from `slice[..count]`, `count` at least 1: what is past the end repeats the last.
+#[inline(always)]
+pub(crate) fn load_part<S: Simd, T: Lanes>(simd: S, slice: &[T], count: usize) -> T::Of<S> {
+    if count >= T::WIDTH {
+        T::load(simd, slice)
+    } else {
+        let mut padded = [slice[count - 1]; 16];
+        padded[..count].copy_from_slice(&slice[..count]);
+        T::load(simd, &padded)
+    }
+}
+
+/// The first `count` lanes to `slice`.
+#[inline(always)]
+pub(crate) fn store_part<S: Simd, T: Lanes>(value: T::Of<S>, slice: &mut [T], count: usize) {
+    if count >= T::WIDTH {
+        T::store::<S>(value, slice);
+    } else {
+        let mut padded = [T::default(); 16];
+        T::store::<S>(value, &mut padded);
+        slice[..count].copy_from_slice(&padded[..count]);
+    }
+}
+
+impl<T: Lanes, const D: usize, M: ConstitutiveModel<D>> Law<T, D> for Compiled<M> {
+    fn strain_columns(&self) -> usize {
+        <M::Strain<f64> as Strain<f64, D>>::COLUMNS
+    }
+
+    fn kirchhoff_stress(
+        &self,
+        isa: IsaToken,
+        strain: &[Vec<T>],
+        affine: &[Vec<T>],
+        start: usize,
+        count: usize,
+        out: &mut [T],
+    ) {
+        let model = self.0;
+        on_level!(isa.0, simd => stress_chunk::<_, T, D, M>(simd, &model, strain, affine, start, count, out));
+    }
+
+    fn advance(
+        &self,
+        isa: IsaToken,
+        strain: &mut [&mut [T]],
+        start: usize,
+        count: usize,
+        increment: &[T],
+    ) -> T {
+        let model = self.0;
+        on_level!(isa.0, simd => advance_chunk::<_, T, D, M>(simd, &model, strain, start, count, increment))
+    }
+
+    fn wave_modulus(&self, strain: &[Vec<T>], count: usize) -> f64 {
+        let mut largest = 0.0_f64;
+        for p in 0..count {
+            let strain = M::Strain::<f64>::read(|column| strain[column][p].to_f64());
+            largest = largest.max(self.0.wave_modulus(strain));
+        }
+        largest
+    }
+
+    fn viscosity(&self) -> f64 {
+        self.0.viscosity()
+    }
+
+    fn start(&self, f: [[f64; D]; D]) -> Vec<f64> {
+        let h = Matrix::from_fn(|i, j| f[i][j] - if i == j { 1.0 } else { 0.0 });
+        let strain = M::Strain::<f64>::from_displacement_gradient(h);
+        let mut columns = vec![0.0; <M::Strain<f64> as Strain<f64, D>>::COLUMNS];
+        strain.write(|column, value| columns[column] = value);
+        columns
+    }
+
+    fn describe(&self, strain: &[f64], velocity_gradient: [[f64; D]; D]) -> ParticleState<D> {
+        let strain = M::Strain::<f64>::read(|column| strain[column]);
+        let h = strain.displacement_gradient();
+        let jacobian = 1.0 + strain.jacobian_minus_one();
+        let gradient = Matrix::from_fn(|i, j| velocity_gradient[i][j]);
+        let tau = self.0.kirchhoff_stress(strain, gradient);
+        ParticleState {
+            jacobian,
+            deformation_gradient: core::array::from_fn(|i| {
+                core::array::from_fn(|j| h[(i, j)] + if i == j { 1.0 } else { 0.0 })
+            }),
+            plastic_jacobian: 1.0 + strain.plastic_jacobian_minus_one(),
+            energy_density: self.0.energy_density(strain),
+            pressure: -tau.trace() / (D as f64 * jacobian),
+        }
+    }
+}
+
+#[inline(always)]
+fn stress_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
+    simd: S,
+    model: &M,
+    strain: &[Vec<T>],
+    affine: &[Vec<T>],
+    start: usize,
+    count: usize,
+    out: &mut [T],
+) {
+    let mut p = 0;
+    while p < count {
+        let left = count - p;
+        let load = |column: &Vec<T>| load_part(simd, &column[start + p..], left);
+        let lanes = M::Strain::read(|column| load(&strain[column]));
+        let gradient = Matrix::from_fn(|i, j| load(&affine[j * D + i]));
+        let tau = model.kirchhoff_stress(lanes, gradient);
+        for j in 0..D {
+            for i in 0..D {
+                T::store::<S>(tau[(i, j)], &mut out[(j * D + i) * CHUNK + p..]);
+            }
+        }
+        p += T::WIDTH;
+    }
+}
+
+#[inline(always)]
+fn advance_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
+    simd: S,
+    model: &M,
+    strain: &mut [&mut [T]],
+    start: usize,
+    count: usize,
+    increment: &[T],
+) -> T {
+    let mut largest = T::broadcast(simd, T::default());
+    let mut p = 0;
+    while p < count {
+        let left = count - p;
+        let before = M::Strain::read(|column| load_part(simd, &strain[column][start + p..], left));
+        let increment =
+            Matrix::from_fn(|i, j| load_part(simd, &increment[(j * D + i) * CHUNK + p..], left));
+        let after = model.advance(before, increment); // (7)
+        after.write(|column, value| {
+            store_part::<S, T>(value, &mut strain[column][start + p..], left)
+        });
+        // Written so that a number that is none stays: max would drop it.
+        let modulus = model.wave_modulus(after);
+        largest = Real::select(largest.ge(modulus), largest, modulus);
+        p += T::WIDTH;
+    }
+    let mut result = largest.lane(0);
+    for lane in 1..T::WIDTH {
+        let x = largest.lane(lane);
+        if !(result >= x) {
+            result = x;
+        }
+    }
+    result
+}

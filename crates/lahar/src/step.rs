@@ -1,0 +1,131 @@
+//! How long a substep is, and why.
+
+use crate::error::DtLimit;
+use crate::setup::TimeStep;
+
+/// Part of the explicit limit dx²/(2 d ν) that viscosity is given.
+const VISCOUS_SAFETY: f64 = 0.5;
+
+/// Substeps left to a moment that are still evened out, so that the last is not a splinter.
+const EVEN_OUT: f64 = 2.0;
+
+/// Chooses each substep from the state that the last one left.
+#[derive(Clone, Debug)]
+pub(crate) struct StepControl {
+    step: TimeStep,
+    dx: f64,
+    /// Largest particle speed \[m/s\].
+    pub(crate) speed: f64,
+    /// Largest elastic wave speed \[m/s\].
+    pub(crate) wave_speed: f64,
+    /// Largest kinematic viscosity \[m²/s\].
+    pub(crate) viscosity: f64,
+    /// Size of gravity \[m/s²\].
+    pub(crate) gravity: f64,
+    /// Substeps taken.
+    pub(crate) substeps: u64,
+    time: f64,
+    shortest: (f64, DtLimit),
+}
+
+impl StepControl {
+    pub(crate) fn new(step: TimeStep, dx: f64) -> Self {
+        Self {
+            step,
+            dx,
+            speed: 0.0,
+            wave_speed: 0.0,
+            viscosity: 0.0,
+            gravity: 0.0,
+            substeps: 0,
+            time: 0.0,
+            shortest: (f64::INFINITY, DtLimit::Frame),
+        }
+    }
+
+    /// Simulated time \[s\].
+    pub(crate) fn time(&self) -> f64 {
+        match self.step {
+            // Not a sum: after a million steps a sum of rounded steps is off by many roundings.
+            TimeStep::Fixed(dt) => self.substeps as f64 * dt,
+            TimeStep::Automatic { .. } => self.time,
+        }
+    }
+
+    /// The next substep if nothing but the state limits it.
+    pub(crate) fn next(&self) -> (f64, DtLimit) {
+        let (cfl, longest) = match self.step {
+            TimeStep::Fixed(dt) => return (dt, DtLimit::Fixed),
+            TimeStep::Automatic { cfl, longest } => (cfl, longest),
+        };
+        // What gravity adds before the particle has crossed its part of a cell.
+        let speed = self.speed + (cfl * self.dx * self.gravity).sqrt();
+        let limits = [
+            (cfl * self.dx / self.wave_speed, DtLimit::Sound),
+            (cfl * self.dx / speed, DtLimit::Speed),
+            (
+                VISCOUS_SAFETY * self.dx * self.dx / (6.0 * self.viscosity),
+                DtLimit::Viscosity,
+            ),
+            (longest, DtLimit::Longest),
+        ];
+        limits
+            .into_iter()
+            .fold((f64::INFINITY, DtLimit::Frame), |least, limit| {
+                if limit.0 < least.0 { limit } else { least }
+            })
+    }
+
+    /// The next substep on the way to `time`; `None` when there.
+    pub(crate) fn towards(&self, time: f64) -> Option<(f64, DtLimit)> {
+        let left = time - self.time();
+        let (dt, limit) = self.next();
+        if limit == DtLimit::Fixed {
+            return (left > 0.5 * dt).then_some((dt, limit));
+        }
+        if left <= f64::EPSILON * time.abs() {
+            return None;
+        }
+        let steps = (left / dt).ceil();
+        if steps <= 1.0 {
+            Some((
+                left,
+                if left < 0.5 * dt {
+                    DtLimit::Frame
+                } else {
+                    limit
+                },
+            ))
+        } else if steps <= EVEN_OUT {
+            Some((left / steps, limit))
+        } else {
+            Some((dt, limit))
+        }
+    }
+
+    /// A substep has been taken.
+    pub(crate) fn taken(&mut self, dt: f64, limit: DtLimit) {
+        self.substeps += 1;
+        self.time += dt;
+        if dt < self.shortest.0 {
+            self.shortest = (dt, limit);
+        }
+    }
+
+    /// The substeps to `time` are done: what their rounded sum missed is made up.
+    pub(crate) fn arrived(&mut self, time: f64) {
+        if self.time < time || self.time - time < 1e-9 * time.abs() {
+            self.time = time;
+        }
+    }
+
+    /// The shortest substep since this was last asked; (0, frame) if there was none.
+    pub(crate) fn shortest_since_asked(&mut self) -> (f64, DtLimit) {
+        let (dt, limit) = core::mem::replace(&mut self.shortest, (f64::INFINITY, DtLimit::Frame));
+        if dt.is_finite() {
+            (dt, limit)
+        } else {
+            (0.0, DtLimit::Frame)
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Storage of particles: a group per material, its fields in columns, rows sorted by block.
+//!
+//! A position is stored relative to the middle of the particle's block, in cells, and shifted by
+//! the kernel's offset, so that the base node of a particle at `u` is simply `floor(u)`:
+//!
+//! ```text
+//!  u = x/dx − OFFSET − edge·block − edge/2        −edge/2 ≤ u < edge/2 when freshly sorted
+//!
+//!  block b:   node 0     1     2     3   |   (edge = 4)
+//!     u  =        −2    −1     0     1   2
+//! ```
+//!
+//! World positions exist at the public interface only. In f32 they could not tell neighbours apart
+//! far from the origin, nor move what is slow near it.
+
+use crate::material::Law;
+use crate::math::Lanes;
+
+/// Nodes along the edge of a block: 64 nodes a block in 2D and in 3D.
+pub(crate) const fn block_edge(dimension: usize) -> usize {
+    if dimension == 2 { 8 } else { 4 }
+}
+
+/// Block coordinates beyond this are out of range: positions that far are a failure.
+pub(crate) const BLOCK_LIMIT: i32 = 1 << 27;
+
+/// A number that is the same for the whole group, or one a particle.
+#[derive(Clone, Debug)]
+pub(crate) enum PerParticle<T> {
+    Uniform(T),
+    Each(Vec<T>),
+}
+
+impl<T: Copy + PartialEq> PerParticle<T> {
+    pub(crate) fn get(&self, index: usize) -> T {
+        match self {
+            Self::Uniform(value) => *value,
+            Self::Each(values) => values[index],
+        }
+    }
+
+    /// Adds `more` behind the `count` numbers that are there.
+    pub(crate) fn extend(&mut self, count: usize, more: &[T]) {
+        if let Self::Uniform(value) = *self {
+            if count == 0
+                && let Some(&first) = more.first()
+            {
+                *self = Self::Uniform(first);
+            }
+            let value = if count == 0 {
+                more.first().copied().unwrap_or(value)
+            } else {
+                value
+            };
+            if more.iter().all(|&x| x == value) {
+                return;
+            }
+            *self = Self::Each(vec![value; count]);
+        }
+        if let Self::Each(values) = self {
+            values.extend_from_slice(more);
+        }
+    }
+}
+
+/// The particles of one block, a range of rows.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run<const D: usize> {
+    pub(crate) block: [i32; D],
+    pub(crate) start: u32,
+    pub(crate) end: u32,
+    /// The block's tile in the grid.
+    pub(crate) tile: u32,
+    /// Whether this group is the first to scatter to that tile.
+    pub(crate) first: bool,
+}
+
+impl<const D: usize> Run<D> {
+    pub(crate) fn rows(&self) -> core::ops::Range<usize> {
+        self.start as usize..self.end as usize
+    }
+}
+
+/// Where each field's columns begin: position, velocity, affine (column by column), strain.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Layout;
+
+impl Layout {
+    pub(crate) const fn velocity(d: usize) -> usize {
+        d
+    }
+    pub(crate) const fn affine(d: usize) -> usize {
+        2 * d
+    }
+    pub(crate) const fn strain(d: usize) -> usize {
+        2 * d + d * d
+    }
+}
+
+/// All particles of one material.
+pub(crate) struct Group<T: Lanes, const D: usize> {
+    pub(crate) law: Box<dyn Law<T, D>>,
+    /// Density at rest.
+    pub(crate) density: f64,
+    pub(crate) columns: Vec<Vec<T>>,
+    pub(crate) mass: PerParticle<T>,
+    pub(crate) volume0: PerParticle<T>,
+    pub(crate) id: Vec<u32>,
+    pub(crate) body: PerParticle<u32>,
+    /// Blocks in ascending order of coordinates (first axis first), which is the order of rows.
+    pub(crate) runs: Vec<Run<D>>,
+}
+
+impl<T: Lanes, const D: usize> Group<T, D> {
+    pub(crate) fn new(law: Box<dyn Law<T, D>>, density: f64) -> Self {
+        let columns = Layout::strain(D) + law.strain_columns();
+        Self {
+            law,
+            density,
+            columns: vec![Vec::new(); columns],
+            mass: PerParticle::Uniform(T::default()),
+            volume0: PerParticle::Uniform(T::default()),
+            id: Vec::new(),
+            body: PerParticle::Uniform(0),
+            runs: Vec::new(),
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.id.len()
+    }
+
+    /// Bytes held, spare capacity included.
+    pub(crate) fn bytes(&self) -> usize {
+        let real = size_of::<T>();
+        let each = |p: &PerParticle<T>| {
+            if let PerParticle::Each(v) = p {
+                v.capacity() * real
+            } else {
+                0
+            }
+        };
+        self.columns
+            .iter()
+            .map(|c| c.capacity() * real)
+            .sum::<usize>()
+            + each(&self.mass)
+            + each(&self.volume0)
+            + self.id.capacity() * 4
+            + if let PerParticle::Each(v) = &self.body {
+                v.capacity() * 4
+            } else {
+                0
+            }
+    }
+
+    /// Position of row `row` of a block, in cells from the origin; `offset` is the kernel's.
+    pub(crate) fn cells(&self, block: [i32; D], row: usize, offset: f64) -> [f64; D] {
+        let edge = block_edge(D) as f64;
+        core::array::from_fn(|axis| {
+            self.columns[axis][row].to_f64() + offset + edge * (f64::from(block[axis]) + 0.5)
+        })
+    }
+}
+
+/// The block of a position `cells` from the origin and the position in it, on one axis.
+pub(crate) fn locate(cells: f64, offset: f64, dimension: usize) -> (i32, f64) {
+    let edge = block_edge(dimension) as f64;
+    let block = ((cells - offset) / edge).floor();
+    (block as i32, cells - offset - edge * (block + 0.5))
+}
+
+/// The most columns a group has: position, velocity, affine, and a plastic strain in 3D, with room to
+/// spare.
+const MOST_COLUMNS: usize = 32;
+
+/// Columns of storage, each a slice, that can be cut in two at a row.
+pub(crate) struct ColumnsMut<'a, T> {
+    pub(crate) slices: [&'a mut [T]; MOST_COLUMNS],
+}
+
+impl<'a, T> ColumnsMut<'a, T> {
+    pub(crate) fn new(columns: &'a mut [Vec<T>]) -> Self {
+        let mut columns = columns.iter_mut();
+        Self {
+            slices: core::array::from_fn(|_| columns.next().map_or(&mut [][..], |c| &mut c[..])),
+        }
+    }
+
+    pub(crate) fn split_at(self, row: usize) -> (Self, Self) {
+        let mut low: [&mut [T]; MOST_COLUMNS] = core::array::from_fn(|_| &mut [][..]);
+        let mut high: [&mut [T]; MOST_COLUMNS] = core::array::from_fn(|_| &mut [][..]);
+        for (column, slice) in self.slices.into_iter().enumerate() {
+            let cut = row.min(slice.len());
+            (low[column], high[column]) = slice.split_at_mut(cut);
+        }
+        (Self { slices: low }, Self { slices: high })
+    }
+}

@@ -1,0 +1,321 @@
+//! Grid to particles: (5)–(8).
+
+use super::scatter::{split_runs, stencil};
+use super::{Scheme, Stage, rows, with_scheme};
+use crate::boundary::walls::Walls;
+use crate::grid::{Grid, tile_edge, tile_plane};
+use crate::kernel::BSpline;
+use crate::material::{CHUNK, IsaToken, load_part, store_part};
+use crate::math::{Lanes, Mask, Matrix, Real, Vector};
+use crate::parallel;
+use crate::setup::Transfer;
+use crate::store::{ColumnsMut, Group, Layout, Run, block_edge};
+use fearless_simd::Simd;
+
+/// Numbers of the largest tile: cubic in 3D, two planes.
+const LARGEST_TILE: usize = 2 * tile_plane::<3>(tile_edge::<3>(4));
+
+/// What a gather found out, for the next time step and for the sort.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bounds {
+    /// Largest squared speed \[m²/s²\].
+    pub(crate) speed_squared: f64,
+    /// Largest move along an axis \[cells\].
+    pub(crate) moved: f64,
+    /// Largest wave modulus \[Pa\].
+    pub(crate) wave_modulus: f64,
+    /// The first row whose new velocity or position is not a number, or too far to be one; its old
+    /// velocity and position are kept.
+    pub(crate) failed: Option<usize>,
+    /// How many there are.
+    pub(crate) failures: u64,
+}
+
+impl Bounds {
+    pub(crate) const NONE: Self = Self {
+        speed_squared: 0.0,
+        moved: 0.0,
+        wave_modulus: 0.0,
+        failed: None,
+        failures: 0,
+    };
+
+    pub(crate) fn and(self, other: Self) -> Self {
+        Self {
+            speed_squared: self.speed_squared.max(other.speed_squared),
+            moved: self.moved.max(other.moved),
+            wave_modulus: self.wave_modulus.max(other.wave_modulus),
+            failed: match (self.failed, other.failed) {
+                (Some(a), Some(b)) => Some(a.min(b)),
+                (a, b) => a.or(b),
+            },
+            failures: self.failures + other.failures,
+        }
+    }
+}
+
+/// A move of more cells than this in a substep is taken for a failure.
+const MOST_CELLS: f64 = 1e6;
+
+/// Moves the particles of `group` with the grid's velocities.
+pub(crate) fn gather<T: Lanes, const D: usize>(
+    group: &mut Group<T, D>,
+    grid: &Grid<T, D>,
+    walls: &Walls<D>,
+    scheme: Scheme,
+    isa: IsaToken,
+    dt: f64,
+) -> Bounds {
+    let grain = parallel::grain(group.len(), 4096);
+    let Group {
+        law, columns, runs, ..
+    } = group;
+    let task = Task {
+        law: law.as_ref(),
+        grid,
+        walls,
+        scheme,
+        isa,
+        dt,
+    };
+    task.halve(runs, 0, ColumnsMut::new(columns), grain)
+}
+
+struct Task<'a, T: Lanes, const D: usize> {
+    law: &'a dyn crate::material::Law<T, D>,
+    grid: &'a Grid<T, D>,
+    walls: &'a Walls<D>,
+    scheme: Scheme,
+    isa: IsaToken,
+    dt: f64,
+}
+
+impl<T: Lanes, const D: usize> Task<'_, T, D> {
+    /// `columns` begin with row `first_row`.
+    fn halve(
+        &self,
+        runs: &[Run<D>],
+        first_row: usize,
+        columns: ColumnsMut<'_, T>,
+        grain: usize,
+    ) -> Bounds {
+        let Some((middle, row)) = split_runs(runs, grain) else {
+            let _flush = crate::float_mode::FlushToZero::enter();
+            let mut stage = Stage::new();
+            let mut tile = [T::default(); LARGEST_TILE];
+            let mut columns = columns;
+            let mut bounds = Bounds::NONE;
+            for run in runs {
+                self.grid.load_tile(run.tile as usize, &mut tile);
+                bounds = bounds.and(self.block(run, first_row, &tile, &mut columns, &mut stage));
+            }
+            return bounds;
+        };
+        let (low, high) = runs.split_at(middle);
+        let (low_columns, high_columns) = columns.split_at(row - first_row);
+        let (a, b) = parallel::join(
+            || self.halve(low, first_row, low_columns, grain),
+            || self.halve(high, row, high_columns, grain),
+        );
+        a.and(b)
+    }
+
+    fn block(
+        &self,
+        run: &Run<D>,
+        first_row: usize,
+        tile: &[T],
+        columns: &mut ColumnsMut<'_, T>,
+        stage: &mut Stage<T>,
+    ) -> Bounds {
+        let plane = self.grid.tile_plane();
+        let hold = self.hold(run);
+        let mut bounds = Bounds::NONE;
+        for row in run.rows().step_by(CHUNK) {
+            let start = row - first_row;
+            let count = CHUNK.min(run.end as usize - row);
+            let mut found = with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
+                chunk::<_, T, D, K, SPLIT, CLASSIC>(simd, self, start, count, plane, tile, &hold, columns, stage)
+            });
+            let strain = &mut columns.slices[Layout::strain(D)..];
+            let modulus = self
+                .law
+                .advance(self.isa, strain, start, count, &stage.matrix)
+                .to_f64();
+            if modulus.is_finite() {
+                found.wave_modulus = modulus;
+            } else if found.failed.is_none() {
+                found.failed = Some(start);
+                found.failures = 1;
+            }
+            found.failed = found.failed.map(|local| local + first_row);
+            bounds = bounds.and(found);
+        }
+        bounds
+    }
+
+    /// Where this block's particles may be, as stored: `None` if no wall is near.
+    fn hold(&self, run: &Run<D>) -> Option<[(T, T); D]> {
+        let edge = block_edge(D) as f64;
+        let offset = self.scheme.offset();
+        let mut near = false;
+        let range = core::array::from_fn(|axis| {
+            let middle = edge * (f64::from(run.block[axis]) + 0.5) + offset;
+            let (low, high) = self.walls.hold[axis];
+            let (low, high) = (
+                low.map_or(f64::NEG_INFINITY, |x| x - middle),
+                high.map_or(f64::INFINITY, |x| x - middle),
+            );
+            // One block further than particles can drift and then move.
+            near |= low > -2.0 * edge || high < 2.0 * edge;
+            (T::from_f64(low.max(-1e30)), T::from_f64(high.min(1e30)))
+        });
+        near.then_some(range)
+    }
+}
+
+/// (5), (6), (8) for a chunk; leaves Δt ∂v/∂x in the stage for the law.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "the innermost function: what does not change comes apart from what does"
+)]
+#[inline(always)]
+fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const CLASSIC: bool>(
+    simd: S,
+    task: &Task<'_, T, D>,
+    start: usize,
+    count: usize,
+    plane: usize,
+    tile: &[T],
+    hold: &Option<[(T, T); D]>,
+    columns: &mut ColumnsMut<'_, T>,
+    stage: &mut Stage<T>,
+) -> Bounds {
+    let mut p = 0;
+    while p < count {
+        let left = count - p;
+        let u = Vector::from_fn(|axis| load_part(simd, &columns.slices[axis][start + p..], left));
+        stencil::<S, T, D, K, CLASSIC>(u, p, stage);
+        p += T::WIDTH;
+    }
+    for p in 0..count {
+        rows::gather::<S, T, D, K, SPLIT, CLASSIC>(
+            simd,
+            stage,
+            p,
+            tile_edge::<D>(K::NODES),
+            plane,
+            tile,
+        );
+    }
+    // Lanes past the end repeat the last particle, so that maxima are those of particles.
+    for p in count..count.next_multiple_of(T::WIDTH) {
+        for quads in stage.momentum.iter_mut().chain(&mut stage.impulse) {
+            quads.copy_within(4 * (count - 1)..4 * count, 4 * p);
+        }
+    }
+
+    let dx = task.scheme.dx;
+    let cells_per_velocity = task.dt / dx;
+    let zero = T::broadcast(simd, T::default());
+    let (mut speed_squared, mut moved) = (zero, zero);
+    let (mut failed, mut failures) = (None, 0);
+    let mut p = 0;
+    while p < count {
+        let left = count - p;
+        let load = |columns: &ColumnsMut<'_, T>, column: usize| {
+            load_part(simd, &columns.slices[column][start + p..], left)
+        };
+        let u = Vector::<_, D>::from_fn(|axis| load(columns, axis));
+        let s = Vector::<_, D>::from_fn(|axis| u[axis] - u[axis].floor() + zero.lit(K::OFFSET));
+        let vector = |quads: &[T; 4 * CHUNK]| {
+            let quad = T::load_quads(simd, &quads[4 * p..]);
+            Vector::<T::Of<S>, D>::from_fn(|axis| quad[axis])
+        };
+        let v = vector(&stage.momentum[0]); // (5)
+        let gradient = Matrix::<_, D>(core::array::from_fn(|axis| {
+            vector(&stage.impulse[1 + axis]) * zero.lit(1.0 / dx)
+        }));
+        let c = if K::INVERSE_INERTIA.is_finite() {
+            // B = Σ w v rᵀ = dx (Σ w v n − v s), C = B D⁻¹
+            Matrix::<_, D>(core::array::from_fn(|axis| {
+                (vector(&stage.momentum[1 + axis]) - v * s[axis])
+                    * zero.lit(K::INVERSE_INERTIA / dx) // (6), (3)
+            }))
+        } else {
+            gradient
+        };
+        let increment = if CLASSIC { gradient } else { c } * zero.lit(task.dt);
+        let mut new_v = v;
+        if let Transfer::Flip { blend } = task.scheme.transfer {
+            let old = Vector::from_fn(|i| load(columns, Layout::velocity(D) + i));
+            new_v = (old + vector(&stage.impulse[0])) * zero.lit(blend) + v * zero.lit(1.0 - blend);
+        }
+        let step = v * zero.lit(cells_per_velocity);
+        let mut new_u = u + step; // (8)
+        if let Some(hold) = hold {
+            new_u = Vector::from_fn(|axis| {
+                new_u[axis]
+                    .max(zero.splat(hold[axis].0))
+                    .min(zero.splat(hold[axis].1))
+            });
+        }
+
+        // One number that is not finite if any is: x − x is 0 or not a number.
+        let mut largest = zero;
+        let mut check = zero;
+        for axis in 0..D {
+            largest = largest.max(step[axis].abs());
+            check = check + (step[axis] - step[axis]) + (new_v[axis] - new_v[axis]);
+        }
+        for column in increment.0 {
+            for axis in 0..D {
+                check = check + (column[axis] - column[axis]);
+            }
+        }
+        let good = check.le(zero) & largest.le(zero.lit(MOST_CELLS));
+        if !good.all() {
+            for lane in 0..left.min(T::WIDTH) {
+                let bad = !(check.lane(lane) <= T::default())
+                    || largest.lane(lane) > T::from_f64(MOST_CELLS);
+                if bad {
+                    failed = failed.or(Some(start + p + lane));
+                    failures += 1;
+                }
+            }
+        }
+        let keep = |new, old| Real::select(good, new, old);
+        moved = moved.max(keep(largest, zero));
+        speed_squared = speed_squared.max(keep(new_v.dot(new_v), zero));
+
+        let mut store = |columns: &mut ColumnsMut<'_, T>, column: usize, value| {
+            store_part::<S, T>(value, &mut columns.slices[column][start + p..], left);
+        };
+        for i in 0..D {
+            let old = load(columns, Layout::velocity(D) + i);
+            store(columns, i, keep(new_u[i], u[i]));
+            store(columns, Layout::velocity(D) + i, keep(new_v[i], old));
+        }
+        for j in 0..D {
+            for i in 0..D {
+                store(columns, Layout::affine(D) + j * D + i, c[(i, j)]);
+                T::store::<S>(
+                    increment[(i, j)],
+                    &mut stage.matrix[(j * D + i) * CHUNK + p..],
+                );
+            }
+        }
+        p += T::WIDTH;
+    }
+
+    let largest = |lanes: T::Of<S>| {
+        (0..T::WIDTH).fold(0.0_f64, |most, lane| most.max(lanes.lane(lane).to_f64()))
+    };
+    Bounds {
+        speed_squared: largest(speed_squared),
+        moved: largest(moved),
+        wave_modulus: 0.0,
+        failed,
+        failures,
+    }
+}

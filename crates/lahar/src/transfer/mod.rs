@@ -1,0 +1,136 @@
+//! The two loops between particles and nodes.
+//!
+//! Each runs over the blocks of a group; a block's particles are worked on in chunks, in stages
+//! through a buffer that stays in the first-level cache, so that laws and transfers are compiled
+//! apart:
+//!
+//! ```text
+//! scatter   law: strain → stress   │ weights, Q_p: lanes of particles │ rows of nodes += particle
+//! gather    rows of nodes → particle │ v, C, x: lanes of particles │ law: strain advances
+//! ```
+//!
+//! "Lanes" means that a register holds the same number of 16 (f64: 8) particles; "rows" that it holds
+//! four nodes of one particle. Rows restate the sums (2), (5) and (6): [`rows`] says how.
+
+pub(crate) mod gather;
+pub(crate) mod rows;
+pub(crate) mod scatter;
+
+use crate::kernel::BSpline;
+use crate::material::CHUNK;
+use crate::math::Lanes;
+use crate::setup::{ForceForm, Kernel, Transfer};
+
+/// What the loops need to know of scheme, kernel and step; all lengths in cells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scheme {
+    pub(crate) kernel: Kernel,
+    pub(crate) force: ForceForm,
+    pub(crate) transfer: Transfer,
+    pub(crate) dx: f64,
+}
+
+impl Scheme {
+    /// Nodes the kernel touches on an axis.
+    pub(crate) fn kernel_nodes(self) -> usize {
+        match self.kernel {
+            Kernel::Linear => crate::kernel::Linear::NODES,
+            Kernel::Quadratic => crate::kernel::Quadratic::NODES,
+            Kernel::Cubic => crate::kernel::Cubic::NODES,
+        }
+    }
+
+    /// The kernel's [`BSpline::OFFSET`].
+    pub(crate) fn offset(self) -> f64 {
+        match self.kernel {
+            Kernel::Linear => crate::kernel::Linear::OFFSET,
+            Kernel::Quadratic => crate::kernel::Quadratic::OFFSET,
+            Kernel::Cubic => crate::kernel::Cubic::OFFSET,
+        }
+    }
+
+    /// The kernel's [`BSpline::INVERSE_INERTIA`].
+    pub(crate) fn inverse_inertia(self) -> f64 {
+        match self.kernel {
+            Kernel::Linear => crate::kernel::Linear::INVERSE_INERTIA,
+            Kernel::Quadratic => crate::kernel::Quadratic::INVERSE_INERTIA,
+            Kernel::Cubic => crate::kernel::Cubic::INVERSE_INERTIA,
+        }
+    }
+
+    /// Planes of quads a node needs: two where velocity before forces is asked for.
+    pub(crate) fn planes(self) -> usize {
+        if matches!(self.transfer, Transfer::Flip { .. }) {
+            2
+        } else {
+            1
+        }
+    }
+}
+
+/// Buffers for one chunk of particles. A quad is four numbers of one particle; quads of a chunk
+/// follow one another.
+pub(crate) struct Stage<T> {
+    /// τ, or Δt ∂v/∂x: `[(j·D + i)·CHUNK + p]`.
+    pub(crate) matrix: [T; 9 * CHUNK],
+    /// For each axis, the four weights of each particle.
+    pub(crate) weights: [[T; 4 * CHUNK]; 3],
+    /// For each axis, the four weight gradients of each particle (classic only).
+    pub(crate) gradients: [[T; 4 * CHUNK]; 3],
+    /// Scatter: P₀ and dx Q by column, of momentum. Gather: Σ w v and Σ w v n by column.
+    pub(crate) momentum: [[T; 4 * CHUNK]; 4],
+    /// Scatter: the same of the impulse of stress, where that is apart. Gather: Σ w Δv, and
+    /// Σ v ∇w by column.
+    pub(crate) impulse: [[T; 4 * CHUNK]; 4],
+    /// Where each particle's first row begins in the tile, in nodes.
+    pub(crate) base: [u32; CHUNK],
+}
+
+impl<T: Lanes> Stage<T> {
+    pub(crate) fn new() -> Self {
+        let zero = T::default();
+        Self {
+            matrix: [zero; 9 * CHUNK],
+            weights: [[zero; 4 * CHUNK]; 3],
+            gradients: [[zero; 4 * CHUNK]; 3],
+            momentum: [[zero; 4 * CHUNK]; 4],
+            impulse: [[zero; 4 * CHUNK]; 4],
+            base: [0; CHUNK],
+        }
+    }
+}
+
+/// Runs an expression with `$K` bound to the kernel's type and `$SPLIT`, `$CLASSIC` to constants, on
+/// `$simd`. The combination that most scenes use is compiled for every instruction set; the others,
+/// kept for comparison, for the portable one.
+macro_rules! with_scheme {
+    ($scheme:expr, $isa:expr, $simd:ident, $K:ident, $SPLIT:ident, $CLASSIC:ident => $body:expr) => {{
+        use $crate::setup::{ForceForm, Kernel};
+        let split = $scheme.planes() == 2;
+        macro_rules! instance {
+            ($kernel:ty, $s:literal, $c:literal, $on:ident $level:tt) => {{
+                #[expect(clippy::items_after_statements, reason = "names for the body")]
+                type $K = $kernel;
+                const $SPLIT: bool = $s;
+                const $CLASSIC: bool = $c;
+                $crate::transfer::with_scheme!(@run $on $level, $simd => $body)
+            }};
+        }
+        match ($scheme.kernel, split, $scheme.force) {
+            (Kernel::Quadratic, false, ForceForm::Mls) => instance!($crate::kernel::Quadratic, false, false, wide ($isa.0)),
+            (Kernel::Quadratic, true, ForceForm::Mls) => instance!($crate::kernel::Quadratic, true, false, wide ($isa.0)),
+            (Kernel::Quadratic, false, ForceForm::Classic) => instance!($crate::kernel::Quadratic, false, true, portable ()),
+            (Kernel::Quadratic, true, ForceForm::Classic) => instance!($crate::kernel::Quadratic, true, true, portable ()),
+            (Kernel::Cubic, false, ForceForm::Mls) => instance!($crate::kernel::Cubic, false, false, portable ()),
+            (Kernel::Cubic, true, ForceForm::Mls) => instance!($crate::kernel::Cubic, true, false, portable ()),
+            (Kernel::Cubic, false, ForceForm::Classic) => instance!($crate::kernel::Cubic, false, true, portable ()),
+            (Kernel::Cubic, true, ForceForm::Classic) => instance!($crate::kernel::Cubic, true, true, portable ()),
+            (Kernel::Linear, false, _) => instance!($crate::kernel::Linear, false, true, portable ()),
+            (Kernel::Linear, true, _) => instance!($crate::kernel::Linear, true, true, portable ()),
+        }
+    }};
+    (@run wide ($level:expr), $simd:ident => $body:expr) => { $crate::dispatch::on_level!($level, $simd => $body) };
+    (@run portable (), $simd:ident => $body:expr) => { $crate::dispatch::on_portable!($simd => $body) };
+}
+
+pub(crate) use with_scheme;

@@ -1,0 +1,253 @@
+//! The sums over nodes, by rows: the only place where (2), (5) and (6) are restated.
+//!
+//! The lever arm r is linear in the node's index n = (i, j, k) from the base node, so what a
+//! particle gives to a node is w_i w_j w_k (P₀ + i A_x + j A_y + k A_z), where
+//!
+//! ```text
+//! A = dx Q by columns,   P₀ = m v − A s,   s = the particle's place from the base node, in cells
+//! ```
+//!
+//! and mass rides along as the fourth number of P₀. The four nodes of a row, k = 0 .. 3, lie side by
+//! side in the tile: one register in f32 with AVX-512. With w_k multiplied in first, a row costs one
+//! fused multiply-add. Likewise G2P sums rows by j, then by i, and the row itself once at the end,
+//! keeping Σ, Σ·i, Σ·j and Σ·k. In 2D a row is (i) and lies along j.
+//!
+//! `reference` does the same sums node by node; tests hold the two together.
+
+use super::Stage;
+use crate::kernel::BSpline;
+use crate::math::{Lanes, Row};
+use fearless_simd::Simd;
+
+/// The node's index along a row, for each of its numbers.
+#[inline(always)]
+fn along<S: Simd, T: Lanes>(simd: S) -> T::Row<S> {
+    let index: [T; 4] = core::array::from_fn(|k| T::from_f64(k as f64));
+    T::Row::spread(simd, &index)
+}
+
+/// (1), (2) for particle `p` of the chunk: adds what it gives to each node of its stencil.
+#[inline(always)]
+pub(super) fn scatter<
+    S: Simd,
+    T: Lanes,
+    const D: usize,
+    K: BSpline,
+    const SPLIT: bool,
+    const CLASSIC: bool,
+>(
+    simd: S,
+    stage: &Stage<T>,
+    p: usize,
+    tile_edge: usize,
+    tile_plane: usize,
+    tile: &mut [T],
+) {
+    let (momentum, impulse) = tile.split_at_mut(tile_plane);
+    scatter_affine::<S, T, D, K>(
+        simd,
+        &stage.momentum,
+        &stage.weights,
+        stage.base[p],
+        p,
+        tile_edge,
+        momentum,
+    );
+    let target = if SPLIT { impulse } else { momentum };
+    if CLASSIC {
+        scatter_classic::<S, T, D, K>(simd, stage, p, tile_edge, target);
+    } else if SPLIT {
+        scatter_affine::<S, T, D, K>(
+            simd,
+            &stage.impulse,
+            &stage.weights,
+            stage.base[p],
+            p,
+            tile_edge,
+            target,
+        );
+    }
+}
+
+#[inline(always)]
+fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
+    simd: S,
+    affine: &[[T; 4 * super::CHUNK]; 4],
+    weights: &[[T; 4 * super::CHUNK]; 3],
+    base: u32,
+    p: usize,
+    tile_edge: usize,
+    tile: &mut [T],
+) {
+    let q = 4 * p;
+    let splat = |x: T| T::Row::<S>::splat(simd, x);
+    let quad = |c: usize| T::Row::<S>::repeat(simd, &affine[c][q..]);
+    let w_row = T::Row::<S>::spread(simd, &weights[D - 1][q..]);
+    let start = w_row * along::<S, T>(simd).mul_add(quad(D), quad(0));
+    let a_x = w_row * quad(1);
+    let mut plane = start;
+    if D == 2 {
+        for i in 0..K::NODES {
+            let row = &mut tile[(base as usize + i * tile_edge) * 4..][..16];
+            splat(weights[0][q + i])
+                .mul_add(plane, T::Row::load(simd, row))
+                .store(row);
+            plane = plane + a_x;
+        }
+    } else {
+        let a_y = w_row * quad(2);
+        for i in 0..K::NODES {
+            let w_i = splat(weights[0][q + i]);
+            let step = w_i * a_y;
+            let mut value = w_i * plane;
+            let at = (base as usize + i * tile_edge * tile_edge) * 4;
+            let rows = &mut tile[at..at + (K::NODES - 1) * tile_edge * 4 + 16];
+            for j in 0..K::NODES {
+                let row = &mut rows[j * tile_edge * 4..][..16];
+                splat(weights[1][q + j])
+                    .mul_add(value, T::Row::load(simd, row))
+                    .store(row);
+                value = value + step;
+            }
+            plane = plane + a_x;
+        }
+    }
+}
+
+/// The original force: what the gradients of the weights make of the impulse's columns G, which
+/// `impulse[1..]` holds: Σ over axes of G_a ∂_a w.
+#[inline(always)]
+fn scatter_classic<S: Simd, T: Lanes, const D: usize, K: BSpline>(
+    simd: S,
+    stage: &Stage<T>,
+    p: usize,
+    tile_edge: usize,
+    tile: &mut [T],
+) {
+    let q = 4 * p;
+    let base = stage.base[p] as usize;
+    let splat = |x: T| T::Row::<S>::splat(simd, x);
+    let quad = |a: usize| T::Row::<S>::repeat(simd, &stage.impulse[1 + a][q..]);
+    let (weights, gradients) = (&stage.weights, &stage.gradients);
+    let w_row = T::Row::<S>::spread(simd, &weights[D - 1][q..]);
+    let g_row = T::Row::<S>::spread(simd, &gradients[D - 1][q..]);
+    let by_x = w_row * quad(0);
+    let by_row = g_row * quad(D - 1);
+    for i in 0..K::NODES {
+        let (w_i, g_i) = (splat(weights[0][q + i]), splat(gradients[0][q + i]));
+        if D == 2 {
+            let row = &mut tile[(base + i * tile_edge) * 4..][..16];
+            (T::Row::load(simd, row) + (g_i * by_x + w_i * by_row)).store(row);
+        } else {
+            let by_y = w_row * quad(1);
+            for j in 0..K::NODES {
+                let (w_j, g_j) = (splat(weights[1][q + j]), splat(gradients[1][q + j]));
+                let row = &mut tile[(base + (i * tile_edge + j) * tile_edge) * 4..][..16];
+                let value = (g_i * w_j) * by_x + ((w_i * g_j) * by_y + (w_i * w_j) * by_row);
+                (T::Row::load(simd, row) + value).store(row);
+            }
+        }
+    }
+}
+
+/// (5), (6) for particle `p`: Σ w v to `momentum[0]`, Σ w v n_a to `momentum[1 + a]`; if `SPLIT`,
+/// Σ w Δv to `impulse[0]`; if `CLASSIC`, dx Σ v ∂_a w to `impulse[1 + a]`.
+#[inline(always)]
+pub(super) fn gather<
+    S: Simd,
+    T: Lanes,
+    const D: usize,
+    K: BSpline,
+    const SPLIT: bool,
+    const CLASSIC: bool,
+>(
+    simd: S,
+    stage: &mut Stage<T>,
+    p: usize,
+    tile_edge: usize,
+    tile_plane: usize,
+    tile: &[T],
+) {
+    let q = 4 * p;
+    let base = stage.base[p] as usize;
+    let splat = |x: T| T::Row::<S>::splat(simd, x);
+    let k = along::<S, T>(simd);
+    let w_row = T::Row::<S>::spread(simd, &stage.weights[D - 1][q..]);
+    let zero = splat(T::default());
+
+    let velocity = &tile[..tile_plane];
+    // Σ_j, Σ_j j, weighted; in 2D a plane is a single row.
+    let plane_sums = |plane: &[T], i: usize, weights: &[T]| {
+        if D == 2 {
+            let row = T::Row::<S>::load(simd, &plane[(base + i * tile_edge) * 4..][..16]);
+            (row, zero)
+        } else {
+            let at = (base + i * tile_edge * tile_edge) * 4;
+            let rows = &plane[at..at + (K::NODES - 1) * tile_edge * 4 + 16];
+            let mut sum = splat(weights[q]) * T::Row::load(simd, rows);
+            let mut by_j = zero;
+            for j in 1..K::NODES {
+                let part = splat(weights[q + j]) * T::Row::load(simd, &rows[j * tile_edge * 4..]);
+                sum = sum + part;
+                by_j = if j == 1 {
+                    part
+                } else {
+                    splat(T::from_f64(j as f64)).mul_add(part, by_j)
+                };
+            }
+            (sum, by_j)
+        }
+    };
+
+    let (mut sum, mut by_i, mut by_j) = (zero, zero, zero);
+    for i in 0..K::NODES {
+        let w_i = splat(stage.weights[0][q + i]);
+        let (plane, plane_by_j) = plane_sums(velocity, i, &stage.weights[1]);
+        let part = w_i * plane;
+        sum = sum + part;
+        if i > 0 {
+            by_i = splat(T::from_f64(i as f64)).mul_add(part, by_i);
+        }
+        if D == 3 {
+            by_j = w_i.mul_add(plane_by_j, by_j);
+        }
+    }
+    let sum = sum * w_row;
+    sum.fold(&mut stage.momentum[0][q..]);
+    (by_i * w_row).fold(&mut stage.momentum[1][q..]);
+    if D == 3 {
+        (by_j * w_row).fold(&mut stage.momentum[2][q..]);
+    }
+    (sum * k).fold(&mut stage.momentum[D][q..]);
+
+    if SPLIT {
+        let change = &tile[tile_plane..];
+        let mut sum = zero;
+        for i in 0..K::NODES {
+            sum = splat(stage.weights[0][q + i])
+                .mul_add(plane_sums(change, i, &stage.weights[1]).0, sum);
+        }
+        (sum * w_row).fold(&mut stage.impulse[0][q..]);
+    }
+    if CLASSIC {
+        let g_row = T::Row::<S>::spread(simd, &stage.gradients[D - 1][q..]);
+        let (mut by_x, mut by_y, mut by_row) = (zero, zero, zero);
+        for i in 0..K::NODES {
+            let (w_i, g_i) = (
+                splat(stage.weights[0][q + i]),
+                splat(stage.gradients[0][q + i]),
+            );
+            let weighted = plane_sums(velocity, i, &stage.weights[1]).0;
+            by_x = g_i.mul_add(weighted, by_x);
+            by_row = w_i.mul_add(weighted, by_row);
+            if D == 3 {
+                by_y = w_i.mul_add(plane_sums(velocity, i, &stage.gradients[1]).0, by_y);
+            }
+        }
+        (by_x * w_row).fold(&mut stage.impulse[1][q..]);
+        if D == 3 {
+            (by_y * w_row).fold(&mut stage.impulse[2][q..]);
+        }
+        (by_row * g_row).fold(&mut stage.impulse[D][q..]);
+    }
+}

@@ -1,0 +1,265 @@
+//! Particles to grid: (1)–(4).
+
+use super::{Scheme, Stage, rows, with_scheme};
+use crate::grid::tile_edge;
+use crate::kernel::BSpline;
+use crate::material::{CHUNK, IsaToken, Law, load_part};
+use crate::math::{Lanes, Matrix, Real, Vector};
+use crate::parallel;
+use crate::setup::Transfer;
+use crate::store::{Group, Layout, PerParticle, Run, block_edge};
+use fearless_simd::Simd;
+
+/// What is scattered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum What {
+    /// Momentum, mass and the impulse of stress.
+    Momentum,
+    /// For gauges: rest volume where the first component of momentum would be; mass.
+    Volume,
+}
+
+/// Adds the particles of `group` to `tiles`. A tile that no group has been added to yet is
+/// cleared first.
+pub(crate) fn scatter<T: Lanes, const D: usize>(
+    group: &Group<T, D>,
+    scheme: Scheme,
+    isa: IsaToken,
+    dt: f64,
+    what: What,
+    tiles: &mut [T],
+) {
+    let task = Task {
+        group,
+        scheme,
+        isa,
+        dt,
+        what,
+    };
+    let grain = parallel::grain(group.len(), 4096);
+    task.halve(&group.runs, 0, tiles, grain);
+}
+
+struct Task<'a, T: Lanes, const D: usize> {
+    group: &'a Group<T, D>,
+    scheme: Scheme,
+    isa: IsaToken,
+    dt: f64,
+    what: What,
+}
+
+impl<T: Lanes, const D: usize> Task<'_, T, D> {
+    fn tile_plane(&self) -> usize {
+        crate::grid::tile_plane::<D>(tile_edge::<D>(self.scheme.kernel_nodes()))
+    }
+
+    fn tile_len(&self) -> usize {
+        self.tile_plane() * self.scheme.planes()
+    }
+
+    /// `tiles` begins with tile `first_tile`.
+    fn halve(&self, runs: &[Run<D>], first_tile: u32, tiles: &mut [T], grain: usize) {
+        let Some((middle, _)) = split_runs(runs, grain) else {
+            let _flush = crate::float_mode::FlushToZero::enter();
+            let mut stage = Stage::new();
+            for run in runs {
+                let tile = &mut tiles[(run.tile - first_tile) as usize * self.tile_len()..]
+                    [..self.tile_len()];
+                self.block(run, tile, &mut stage);
+            }
+            return;
+        };
+        let (low, high) = runs.split_at(middle);
+        let tile = high[0].tile;
+        let (low_tiles, high_tiles) =
+            tiles.split_at_mut((tile - first_tile) as usize * self.tile_len());
+        parallel::join(
+            || self.halve(low, first_tile, low_tiles, grain),
+            || self.halve(high, tile, high_tiles, grain),
+        );
+    }
+
+    fn block(&self, run: &Run<D>, tile: &mut [T], stage: &mut Stage<T>) {
+        if run.first {
+            tile.fill(T::default());
+        }
+        let strain = &self.group.columns[Layout::strain(D)..];
+        let affine = &self.group.columns[Layout::affine(D)..Layout::strain(D)];
+        let plane = self.tile_plane();
+        for start in run.rows().step_by(CHUNK) {
+            let count = CHUNK.min(run.end as usize - start);
+            if self.what == What::Momentum {
+                self.group.law.kirchhoff_stress(
+                    self.isa,
+                    strain,
+                    affine,
+                    start,
+                    count,
+                    &mut stage.matrix,
+                );
+            }
+            with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
+                prepare::<_, T, D, K, SPLIT, CLASSIC>(simd, self, start, count, stage);
+                for p in 0..count {
+                    rows::scatter::<_, T, D, K, SPLIT, CLASSIC>(
+                        simd, stage, p, tile_edge::<D>(K::NODES), plane, tile,
+                    );
+                }
+            });
+        }
+    }
+}
+
+/// Where to cut a list of runs so that both halves have about as many particles: the index of the
+/// first run of the second half and its first row. `None` if the list is not worth cutting.
+pub(super) fn split_runs<const D: usize>(runs: &[Run<D>], grain: usize) -> Option<(usize, usize)> {
+    let (first, last) = (runs.first()?, runs.last()?);
+    let rows = (last.end - first.start) as usize;
+    if rows <= grain || runs.len() < 2 {
+        return None;
+    }
+    let half = first.start + (rows / 2) as u32;
+    let middle = runs
+        .partition_point(|run| run.start < half)
+        .clamp(1, runs.len() - 1);
+    Some((middle, runs[middle].start as usize))
+}
+
+/// Numbers of `count` particles from a value that may be the same for all.
+#[inline(always)]
+pub(super) fn load_each<S: Simd, T: Lanes>(
+    simd: S,
+    value: &PerParticle<T>,
+    start: usize,
+    count: usize,
+) -> T::Of<S> {
+    match value {
+        PerParticle::Uniform(value) => T::broadcast(simd, *value),
+        PerParticle::Each(values) => load_part(simd, &values[start..], count),
+    }
+}
+
+/// The stencil of a register of particles: weights to the stage; returns s, the place from the base
+/// node in cells.
+#[inline(always)]
+pub(super) fn stencil<S: Simd, T: Lanes, const D: usize, K: BSpline, const CLASSIC: bool>(
+    u: Vector<T::Of<S>, D>,
+    p: usize,
+    stage: &mut Stage<T>,
+) -> Vector<T::Of<S>, D> {
+    // Tiles begin one node before their block.
+    let first = u[0].lit((block_edge(D) / 2) as f64 + 1.0);
+    let edge = u[0].lit(tile_edge::<D>(K::NODES) as f64);
+    let floor = Vector::<_, D>::from_fn(|axis| u[axis].floor());
+    let frac = u - floor;
+    let mut base = floor[0] + first;
+    for axis in 1..D {
+        base = base * edge + (floor[axis] + first);
+    }
+    let mut bases = [T::default(); 16];
+    T::store::<S>(base, &mut bases);
+    for lane in 0..T::WIDTH {
+        stage.base[p + lane] = bases[lane].to_index() as u32;
+    }
+    for axis in 0..D {
+        T::store_quads::<S>(K::weights(frac[axis]), &mut stage.weights[axis][4 * p..]);
+        if CLASSIC {
+            T::store_quads::<S>(
+                K::gradients(frac[axis]),
+                &mut stage.gradients[axis][4 * p..],
+            );
+        }
+    }
+    frac + Vector::from_fn(|_| u[0].lit(K::OFFSET))
+}
+
+/// A vector's components and a fourth number, as a quad.
+#[inline(always)]
+fn quad<R: Real, const D: usize>(v: Vector<R, D>, fourth: R) -> [R; 4] {
+    let zero = fourth.zero();
+    [v[0], v[1], if D == 3 { v[D - 1] } else { zero }, fourth]
+}
+
+/// (3), (4) for a chunk: weights, and what each particle gives by rows.
+#[inline(always)]
+fn prepare<
+    S: Simd,
+    T: Lanes,
+    const D: usize,
+    K: BSpline,
+    const SPLIT: bool,
+    const CLASSIC: bool,
+>(
+    simd: S,
+    task: &Task<'_, T, D>,
+    start: usize,
+    count: usize,
+    stage: &mut Stage<T>,
+) {
+    let group = task.group;
+    let dx = task.scheme.dx;
+    let apic = task.scheme.transfer == Transfer::Apic;
+    let mut p = 0;
+    while p < count {
+        let left = count - p;
+        let load = |column: usize| load_part(simd, &group.columns[column][start + p..], left);
+        let s = stencil::<S, T, D, K, CLASSIC>(Vector::from_fn(load), p, stage);
+        let m = load_each(simd, &group.mass, start + p, left);
+        let zero = m.zero();
+        let volume0 = load_each(simd, &group.volume0, start + p, left);
+        if task.what == What::Volume {
+            T::store_quads::<S>([volume0, zero, zero, m], &mut stage.momentum[0][4 * p..]);
+            for axis in 0..D {
+                T::store_quads::<S>([zero; 4], &mut stage.momentum[1 + axis][4 * p..]);
+            }
+            for part in &mut stage.impulse {
+                T::store_quads::<S>([zero; 4], &mut part[4 * p..]);
+            }
+            p += T::WIDTH;
+            continue;
+        }
+        let v = Vector::from_fn(|i| load(Layout::velocity(D) + i));
+        let tau = Matrix::<_, D>::from_fn(|i, j| {
+            T::load(simd, &stage.matrix[(j * D + i) * CHUNK + p..])
+        });
+        // dx Q, column by column: its motion part and its stress part.
+        let mut affine = Matrix::scaled_identity(zero);
+        if apic {
+            let c = Matrix::<_, D>::from_fn(|i, j| load(Layout::affine(D) + j * D + i));
+            affine = c * (m * m.lit(dx));
+        }
+        // −Δt V⁰ D⁻¹ τ dx, or −Δt V⁰ τ / dx to be met by dx ∂w.
+        let scale = if CLASSIC {
+            -task.dt / dx
+        } else {
+            -task.dt * K::INVERSE_INERTIA / dx
+        };
+        let stress = tau * (volume0 * m.lit(scale));
+        if CLASSIC {
+            for axis in 0..D {
+                T::store_quads::<S>(
+                    quad(stress.0[axis], zero),
+                    &mut stage.impulse[1 + axis][4 * p..],
+                );
+            }
+        } else if SPLIT {
+            T::store_quads::<S>(quad(-(stress * s), zero), &mut stage.impulse[0][4 * p..]);
+            for axis in 0..D {
+                T::store_quads::<S>(
+                    quad(stress.0[axis], zero),
+                    &mut stage.impulse[1 + axis][4 * p..],
+                );
+            }
+        } else {
+            affine += stress; // (4)
+        }
+        T::store_quads::<S>(quad(v * m - affine * s, m), &mut stage.momentum[0][4 * p..]);
+        for axis in 0..D {
+            T::store_quads::<S>(
+                quad(affine.0[axis], zero),
+                &mut stage.momentum[1 + axis][4 * p..],
+            );
+        }
+        p += T::WIDTH;
+    }
+}
