@@ -193,9 +193,9 @@ fn stress_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     let mut p = 0;
     while p < count {
         let left = count - p;
-        let load = |column: &Vec<T>| load_part(simd, &column[start + p..], left);
-        let lanes = M::Strain::read(|column| load(&strain[column]));
-        let gradient = Matrix::from_fn(|i, j| load(&affine[j * D + i]));
+        let lanes = M::Strain::read(|column| load_part(simd, &strain[column][start + p..], left));
+        let gradient =
+            Matrix::from_fn(|i, j| load_part(simd, &affine[j * D + i][start + p..], left));
         let tau = model.kirchhoff_stress(lanes, gradient);
         for j in 0..D {
             for i in 0..D {

@@ -142,7 +142,12 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn store_quads<S: Simd>(quads: [Self::Of<S>; 4], slice: &mut [Self]) {
-                let parts = quads.map($parts);
+                let parts = [
+                    $parts(quads[0]),
+                    $parts(quads[1]),
+                    $parts(quads[2]),
+                    $parts(quads[3]),
+                ];
                 for (k, out) in slice[..4 * $width].chunks_exact_mut($width).enumerate() {
                     SimdInterleaved::store_four_interleaved(
                         [parts[0][k], parts[1][k], parts[2][k], parts[3][k]],
@@ -152,14 +157,18 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn load_quads<S: Simd>(simd: S, slice: &[Self]) -> [Self::Of<S>; 4] {
-                let parts: [[$part<S>; 4]; 4] = core::array::from_fn(|k| {
-                    $part::load_four_interleaved(simd, &slice[k * $width..(k + 1) * $width])
-                });
-                core::array::from_fn(|c| {
-                    parts[0][c]
-                        .combine(parts[1][c])
-                        .combine(parts[2][c].combine(parts[3][c]))
-                })
+                let mut parts = [$part::load_four_interleaved(simd, &slice[..$width]); 4];
+                for k in 1..4 {
+                    parts[k] =
+                        $part::load_four_interleaved(simd, &slice[k * $width..(k + 1) * $width]);
+                }
+                let [a, b, c, d] = parts;
+                [
+                    a[0].combine(b[0]).combine(c[0].combine(d[0])),
+                    a[1].combine(b[1]).combine(c[1].combine(d[1])),
+                    a[2].combine(b[2]).combine(c[2].combine(d[2])),
+                    a[3].combine(b[3]).combine(c[3].combine(d[3])),
+                ]
             }
             type Row<S: Simd> = $row<S>;
         }
@@ -202,7 +211,13 @@ impl<S: Simd> Row<S, f32> for f32x16<S> {
     }
     #[inline(always)]
     fn spread(simd: S, slice: &[f32]) -> Self {
-        let [a, b, c, d]: [f32x4<S>; 4] = core::array::from_fn(|k| SimdBase::splat(simd, slice[k]));
+        let quad = f32x4::<S>::from_slice(simd, &slice[..4]);
+        let [a, b, c, d] = [
+            f32x4::<S>::splat(simd, quad[0]),
+            f32x4::<S>::splat(simd, quad[1]),
+            f32x4::<S>::splat(simd, quad[2]),
+            f32x4::<S>::splat(simd, quad[3]),
+        ];
         a.combine(b).combine(c.combine(d))
     }
     #[inline(always)]
@@ -263,7 +278,13 @@ impl<S: Simd> Row<S, f64> for F64Row<S> {
     }
     #[inline(always)]
     fn spread(simd: S, slice: &[f64]) -> Self {
-        let [a, b, c, d]: [f64x4<S>; 4] = core::array::from_fn(|k| SimdBase::splat(simd, slice[k]));
+        let quad = f64x4::<S>::from_slice(simd, &slice[..4]);
+        let [a, b, c, d] = [
+            f64x4::<S>::splat(simd, quad[0]),
+            f64x4::<S>::splat(simd, quad[1]),
+            f64x4::<S>::splat(simd, quad[2]),
+            f64x4::<S>::splat(simd, quad[3]),
+        ];
         Self(a.combine(b), c.combine(d))
     }
     #[inline(always)]

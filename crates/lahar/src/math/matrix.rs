@@ -12,7 +12,15 @@ impl<R: Real, const D: usize> Matrix<R, D> {
     /// The matrix whose entry in row `i`, column `j` is `f(i, j)`.
     #[inline(always)]
     pub fn from_fn(mut f: impl FnMut(usize, usize) -> R) -> Self {
-        Self(core::array::from_fn(|j| Vector::from_fn(|i| f(i, j))))
+        let mut m = Self([Vector([f(0, 0); D]); D]);
+        for j in 0..D {
+            for i in 0..D {
+                if (i, j) != (0, 0) {
+                    m[(i, j)] = f(i, j);
+                }
+            }
+        }
+        m
     }
     /// `value` times the identity.
     #[inline(always)]
@@ -105,15 +113,21 @@ impl<R, const D: usize> IndexMut<(usize, usize)> for Matrix<R, D> {
 impl<R: Real, const D: usize> Add for Matrix<R, D> {
     type Output = Self;
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self::from_fn(|i, j| self[(i, j)] + other[(i, j)])
+    fn add(mut self, other: Self) -> Self {
+        for j in 0..D {
+            self.0[j] = self.0[j] + other.0[j];
+        }
+        self
     }
 }
 impl<R: Real, const D: usize> Sub for Matrix<R, D> {
     type Output = Self;
     #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self::from_fn(|i, j| self[(i, j)] - other[(i, j)])
+    fn sub(mut self, other: Self) -> Self {
+        for j in 0..D {
+            self.0[j] = self.0[j] - other.0[j];
+        }
+        self
     }
 }
 impl<R: Real, const D: usize> AddAssign for Matrix<R, D> {
@@ -132,8 +146,11 @@ impl<R: Real, const D: usize> SubAssign for Matrix<R, D> {
 impl<R: Real, const D: usize> Mul<R> for Matrix<R, D> {
     type Output = Self;
     #[inline(always)]
-    fn mul(self, factor: R) -> Self {
-        Self::from_fn(|i, j| self[(i, j)] * factor)
+    fn mul(mut self, factor: R) -> Self {
+        for j in 0..D {
+            self.0[j] = self.0[j] * factor;
+        }
+        self
     }
 }
 impl<R: Real, const D: usize> Mul<Vector<R, D>> for Matrix<R, D> {
@@ -151,6 +168,10 @@ impl<R: Real, const D: usize> Mul for Matrix<R, D> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        Self(core::array::from_fn(|j| self * other.0[j]))
+        let mut columns = [self * other.0[0]; D];
+        for j in 1..D {
+            columns[j] = self * other.0[j];
+        }
+        Self(columns)
     }
 }

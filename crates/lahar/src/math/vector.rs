@@ -10,8 +10,14 @@ pub struct Vector<R, const D: usize>(pub [R; D]);
 impl<R: Real, const D: usize> Vector<R, D> {
     /// The vector whose component `i` is `f(i)`.
     #[inline(always)]
-    pub fn from_fn(f: impl FnMut(usize) -> R) -> Self {
-        Self(core::array::from_fn(f))
+    pub fn from_fn(mut f: impl FnMut(usize) -> R) -> Self {
+        // Not core's from_fn: that is not always inlined, and lanes outside of a function compiled
+        // for their instruction set are slow.
+        let mut components = [f(0); D];
+        for i in 1..D {
+            components[i] = f(i);
+        }
+        Self(components)
     }
     /// Σ aᵢ bᵢ.
     #[inline(always)]
@@ -45,30 +51,42 @@ impl<R, const D: usize> IndexMut<usize> for Vector<R, D> {
 impl<R: Real, const D: usize> Add for Vector<R, D> {
     type Output = Self;
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self::from_fn(|i| self[i] + other[i])
+    fn add(mut self, other: Self) -> Self {
+        for i in 0..D {
+            self[i] = self[i] + other[i];
+        }
+        self
     }
 }
 impl<R: Real, const D: usize> Sub for Vector<R, D> {
     type Output = Self;
     #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self::from_fn(|i| self[i] - other[i])
+    fn sub(mut self, other: Self) -> Self {
+        for i in 0..D {
+            self[i] = self[i] - other[i];
+        }
+        self
     }
 }
 impl<R: Real, const D: usize> Neg for Vector<R, D> {
     type Output = Self;
     #[inline(always)]
-    fn neg(self) -> Self {
-        Self::from_fn(|i| -self[i])
+    fn neg(mut self) -> Self {
+        for i in 0..D {
+            self[i] = -self[i];
+        }
+        self
     }
 }
 /// Times a number.
 impl<R: Real, const D: usize> Mul<R> for Vector<R, D> {
     type Output = Self;
     #[inline(always)]
-    fn mul(self, factor: R) -> Self {
-        Self::from_fn(|i| self[i] * factor)
+    fn mul(mut self, factor: R) -> Self {
+        for i in 0..D {
+            self[i] *= factor;
+        }
+        self
     }
 }
 impl<R: Real, const D: usize> AddAssign for Vector<R, D> {

@@ -174,6 +174,36 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
     }
 }
 
+/// A vector of a register of particles from its columns.
+#[inline(always)]
+fn load_vector<S: Simd, T: Lanes, const D: usize>(
+    simd: S,
+    columns: &[&mut [T]],
+    at: usize,
+    left: usize,
+) -> Vector<T::Of<S>, D> {
+    let mut v = Vector([load_part(simd, &columns[0][at..], left); D]);
+    for axis in 1..D {
+        v[axis] = load_part(simd, &columns[axis][at..], left);
+    }
+    v
+}
+
+/// A vector of a register of particles from their quads.
+#[inline(always)]
+fn load_quads<S: Simd, T: Lanes, const D: usize>(
+    simd: S,
+    quads: &[T; 4 * CHUNK],
+    p: usize,
+) -> Vector<T::Of<S>, D> {
+    let quad = T::load_quads(simd, &quads[4 * p..]);
+    let mut v = Vector([quad[0]; D]);
+    for axis in 1..D {
+        v[axis] = quad[axis];
+    }
+    v
+}
+
 /// (5), (6), (8) for a chunk; leaves Δt ∂v/∂x in the stage for the law.
 #[expect(
     clippy::too_many_arguments,
@@ -194,7 +224,7 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
     let mut p = 0;
     while p < count {
         let left = count - p;
-        let u = Vector::from_fn(|axis| load_part(simd, &columns.slices[axis][start + p..], left));
+        let u = load_vector::<S, T, D>(simd, &columns.slices[..D], start + p, left);
         stencil::<S, T, D, K, CLASSIC>(u, p, stage);
         p += T::WIDTH;
     }
@@ -222,43 +252,37 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
     let (mut failed, mut failures) = (None, 0);
     let mut p = 0;
     while p < count {
-        let left = count - p;
-        let load = |columns: &ColumnsMut<'_, T>, column: usize| {
-            load_part(simd, &columns.slices[column][start + p..], left)
-        };
-        let u = Vector::<_, D>::from_fn(|axis| load(columns, axis));
-        let s = Vector::<_, D>::from_fn(|axis| u[axis] - u[axis].floor() + zero.lit(K::OFFSET));
-        let vector = |quads: &[T; 4 * CHUNK]| {
-            let quad = T::load_quads(simd, &quads[4 * p..]);
-            Vector::<T::Of<S>, D>::from_fn(|axis| quad[axis])
-        };
-        let v = vector(&stage.momentum[0]); // (5)
-        let gradient = Matrix::<_, D>(core::array::from_fn(|axis| {
-            vector(&stage.impulse[1 + axis]) * zero.lit(1.0 / dx)
-        }));
-        let c = if K::INVERSE_INERTIA.is_finite() {
+        let (at, left) = (start + p, count - p);
+        let u = load_vector::<S, T, D>(simd, &columns.slices[..D], at, left);
+        let old_v = load_vector::<S, T, D>(simd, &columns.slices[Layout::velocity(D)..], at, left);
+        let v = load_quads::<S, T, D>(simd, &stage.momentum[0], p); // (5)
+        let mut gradient = Matrix([v; D]);
+        let mut c = gradient;
+        for axis in 0..D {
+            gradient.0[axis] =
+                load_quads::<S, T, D>(simd, &stage.impulse[1 + axis], p) * zero.lit(1.0 / dx);
             // B = Σ w v rᵀ = dx (Σ w v n − v s), C = B D⁻¹
-            Matrix::<_, D>(core::array::from_fn(|axis| {
-                (vector(&stage.momentum[1 + axis]) - v * s[axis])
-                    * zero.lit(K::INVERSE_INERTIA / dx) // (6), (3)
-            }))
-        } else {
-            gradient
-        };
+            let s = u[axis] - u[axis].floor() + zero.lit(K::OFFSET);
+            let moment = load_quads::<S, T, D>(simd, &stage.momentum[1 + axis], p);
+            c.0[axis] = (moment - v * s) * zero.lit(K::INVERSE_INERTIA / dx); // (6), (3)
+        }
+        if !K::INVERSE_INERTIA.is_finite() {
+            c = gradient;
+        }
         let increment = if CLASSIC { gradient } else { c } * zero.lit(task.dt);
         let mut new_v = v;
         if let Transfer::Flip { blend } = task.scheme.transfer {
-            let old = Vector::from_fn(|i| load(columns, Layout::velocity(D) + i));
-            new_v = (old + vector(&stage.impulse[0])) * zero.lit(blend) + v * zero.lit(1.0 - blend);
+            let change = load_quads::<S, T, D>(simd, &stage.impulse[0], p);
+            new_v = (old_v + change) * zero.lit(blend) + v * zero.lit(1.0 - blend);
         }
         let step = v * zero.lit(cells_per_velocity);
         let mut new_u = u + step; // (8)
         if let Some(hold) = hold {
-            new_u = Vector::from_fn(|axis| {
-                new_u[axis]
+            for axis in 0..D {
+                new_u[axis] = new_u[axis]
                     .max(zero.splat(hold[axis].0))
-                    .min(zero.splat(hold[axis].1))
-            });
+                    .min(zero.splat(hold[axis].1));
+            }
         }
 
         // One number that is not finite if any is: x − x is 0 or not a number.
@@ -284,21 +308,23 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
                 }
             }
         }
-        let keep = |new, old| Real::select(good, new, old);
-        moved = moved.max(keep(largest, zero));
-        speed_squared = speed_squared.max(keep(new_v.dot(new_v), zero));
+        moved = moved.max(Real::select(good, largest, zero));
+        speed_squared = speed_squared.max(Real::select(good, new_v.dot(new_v), zero));
 
-        let mut store = |columns: &mut ColumnsMut<'_, T>, column: usize, value| {
-            store_part::<S, T>(value, &mut columns.slices[column][start + p..], left);
-        };
         for i in 0..D {
-            let old = load(columns, Layout::velocity(D) + i);
-            store(columns, i, keep(new_u[i], u[i]));
-            store(columns, Layout::velocity(D) + i, keep(new_v[i], old));
+            let new_u = Real::select(good, new_u[i], u[i]);
+            store_part::<S, T>(new_u, &mut columns.slices[i][at..], left);
+            let new_v = Real::select(good, new_v[i], old_v[i]);
+            store_part::<S, T>(
+                new_v,
+                &mut columns.slices[Layout::velocity(D) + i][at..],
+                left,
+            );
         }
         for j in 0..D {
             for i in 0..D {
-                store(columns, Layout::affine(D) + j * D + i, c[(i, j)]);
+                let column = Layout::affine(D) + j * D + i;
+                store_part::<S, T>(c[(i, j)], &mut columns.slices[column][at..], left);
                 T::store::<S>(
                     increment[(i, j)],
                     &mut stage.matrix[(j * D + i) * CHUNK + p..],

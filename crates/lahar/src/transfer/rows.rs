@@ -22,7 +22,12 @@ use fearless_simd::Simd;
 /// The node's index along a row, for each of its numbers.
 #[inline(always)]
 fn along<S: Simd, T: Lanes>(simd: S) -> T::Row<S> {
-    let index: [T; 4] = core::array::from_fn(|k| T::from_f64(k as f64));
+    let index = [
+        T::from_f64(0.0),
+        T::from_f64(1.0),
+        T::from_f64(2.0),
+        T::from_f64(3.0),
+    ];
     T::Row::spread(simd, &index)
 }
 
@@ -80,7 +85,6 @@ fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     tile: &mut [T],
 ) {
     let q = 4 * p;
-    let splat = |x: T| T::Row::<S>::splat(simd, x);
     let quad = |c: usize| T::Row::<S>::repeat(simd, &affine[c][q..]);
     let w_row = T::Row::<S>::spread(simd, &weights[D - 1][q..]);
     let start = w_row * along::<S, T>(simd).mul_add(quad(D), quad(0));
@@ -89,7 +93,7 @@ fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     if D == 2 {
         for i in 0..K::NODES {
             let row = &mut tile[(base as usize + i * tile_edge) * 4..][..16];
-            splat(weights[0][q + i])
+            T::Row::splat(simd, weights[0][q + i])
                 .mul_add(plane, T::Row::load(simd, row))
                 .store(row);
             plane = plane + a_x;
@@ -97,14 +101,14 @@ fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     } else {
         let a_y = w_row * quad(2);
         for i in 0..K::NODES {
-            let w_i = splat(weights[0][q + i]);
+            let w_i = T::Row::splat(simd, weights[0][q + i]);
             let step = w_i * a_y;
             let mut value = w_i * plane;
             let at = (base as usize + i * tile_edge * tile_edge) * 4;
             let rows = &mut tile[at..at + (K::NODES - 1) * tile_edge * 4 + 16];
             for j in 0..K::NODES {
                 let row = &mut rows[j * tile_edge * 4..][..16];
-                splat(weights[1][q + j])
+                T::Row::splat(simd, weights[1][q + j])
                     .mul_add(value, T::Row::load(simd, row))
                     .store(row);
                 value = value + step;
@@ -126,7 +130,6 @@ fn scatter_classic<S: Simd, T: Lanes, const D: usize, K: BSpline>(
 ) {
     let q = 4 * p;
     let base = stage.base[p] as usize;
-    let splat = |x: T| T::Row::<S>::splat(simd, x);
     let quad = |a: usize| T::Row::<S>::repeat(simd, &stage.impulse[1 + a][q..]);
     let (weights, gradients) = (&stage.weights, &stage.gradients);
     let w_row = T::Row::<S>::spread(simd, &weights[D - 1][q..]);
@@ -134,20 +137,68 @@ fn scatter_classic<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     let by_x = w_row * quad(0);
     let by_row = g_row * quad(D - 1);
     for i in 0..K::NODES {
-        let (w_i, g_i) = (splat(weights[0][q + i]), splat(gradients[0][q + i]));
+        let (w_i, g_i) = (
+            T::Row::splat(simd, weights[0][q + i]),
+            T::Row::splat(simd, gradients[0][q + i]),
+        );
         if D == 2 {
             let row = &mut tile[(base + i * tile_edge) * 4..][..16];
             (T::Row::load(simd, row) + (g_i * by_x + w_i * by_row)).store(row);
         } else {
             let by_y = w_row * quad(1);
             for j in 0..K::NODES {
-                let (w_j, g_j) = (splat(weights[1][q + j]), splat(gradients[1][q + j]));
+                let (w_j, g_j) = (
+                    T::Row::splat(simd, weights[1][q + j]),
+                    T::Row::splat(simd, gradients[1][q + j]),
+                );
                 let row = &mut tile[(base + (i * tile_edge + j) * tile_edge) * 4..][..16];
                 let value = (g_i * w_j) * by_x + ((w_i * g_j) * by_y + (w_i * w_j) * by_row);
                 (T::Row::load(simd, row) + value).store(row);
             }
         }
     }
+}
+
+/// Σ_j and Σ_j j of a plane's rows, weighted; in 2D a plane is a single row.
+#[inline(always)]
+fn plane_sums<S: Simd, T: Lanes, const D: usize, K: BSpline>(
+    simd: S,
+    plane: &[T],
+    tile_edge: usize,
+    weights: &[T],
+) -> (T::Row<S>, T::Row<S>) {
+    if D == 2 {
+        return (T::Row::load(simd, plane), T::Row::splat(simd, T::default()));
+    }
+    let mut sum = T::Row::splat(simd, weights[0]) * T::Row::load(simd, plane);
+    let mut by_j = T::Row::splat(simd, T::default());
+    for j in 1..K::NODES {
+        let part =
+            T::Row::splat(simd, weights[j]) * T::Row::load(simd, &plane[j * tile_edge * 4..]);
+        sum = sum + part;
+        by_j = if j == 1 {
+            part
+        } else {
+            T::Row::splat(simd, T::from_f64(j as f64)).mul_add(part, by_j)
+        };
+    }
+    (sum, by_j)
+}
+
+/// The rows of plane `i` of a stencil.
+#[inline(always)]
+fn plane<T, const D: usize, K: BSpline>(
+    tile: &[T],
+    base: usize,
+    i: usize,
+    tile_edge: usize,
+) -> &[T] {
+    let (at, rows) = if D == 2 {
+        (base + i * tile_edge, 0)
+    } else {
+        (base + i * tile_edge * tile_edge, K::NODES - 1)
+    };
+    &tile[at * 4..][..rows * tile_edge * 4 + 16]
 }
 
 /// (5), (6) for particle `p`: Σ w v to `momentum[0]`, Σ w v n_a to `momentum[1 + a]`; if `SPLIT`,
@@ -170,46 +221,27 @@ pub(super) fn gather<
 ) {
     let q = 4 * p;
     let base = stage.base[p] as usize;
-    let splat = |x: T| T::Row::<S>::splat(simd, x);
     let k = along::<S, T>(simd);
     let w_row = T::Row::<S>::spread(simd, &stage.weights[D - 1][q..]);
-    let zero = splat(T::default());
+    let zero = T::Row::splat(simd, T::default());
 
     let velocity = &tile[..tile_plane];
-    // Σ_j, Σ_j j, weighted; in 2D a plane is a single row.
-    let plane_sums = |plane: &[T], i: usize, weights: &[T]| {
-        if D == 2 {
-            let row = T::Row::<S>::load(simd, &plane[(base + i * tile_edge) * 4..][..16]);
-            (row, zero)
-        } else {
-            let at = (base + i * tile_edge * tile_edge) * 4;
-            let rows = &plane[at..at + (K::NODES - 1) * tile_edge * 4 + 16];
-            let mut sum = splat(weights[q]) * T::Row::load(simd, rows);
-            let mut by_j = zero;
-            for j in 1..K::NODES {
-                let part = splat(weights[q + j]) * T::Row::load(simd, &rows[j * tile_edge * 4..]);
-                sum = sum + part;
-                by_j = if j == 1 {
-                    part
-                } else {
-                    splat(T::from_f64(j as f64)).mul_add(part, by_j)
-                };
-            }
-            (sum, by_j)
-        }
-    };
-
     let (mut sum, mut by_i, mut by_j) = (zero, zero, zero);
     for i in 0..K::NODES {
-        let w_i = splat(stage.weights[0][q + i]);
-        let (plane, plane_by_j) = plane_sums(velocity, i, &stage.weights[1]);
-        let part = w_i * plane;
+        let w_i = T::Row::splat(simd, stage.weights[0][q + i]);
+        let (row, row_by_j) = plane_sums::<S, T, D, K>(
+            simd,
+            plane::<T, D, K>(velocity, base, i, tile_edge),
+            tile_edge,
+            &stage.weights[1][q..],
+        );
+        let part = w_i * row;
         sum = sum + part;
         if i > 0 {
-            by_i = splat(T::from_f64(i as f64)).mul_add(part, by_i);
+            by_i = T::Row::splat(simd, T::from_f64(i as f64)).mul_add(part, by_i);
         }
         if D == 3 {
-            by_j = w_i.mul_add(plane_by_j, by_j);
+            by_j = w_i.mul_add(row_by_j, by_j);
         }
     }
     let sum = sum * w_row;
@@ -224,8 +256,16 @@ pub(super) fn gather<
         let change = &tile[tile_plane..];
         let mut sum = zero;
         for i in 0..K::NODES {
-            sum = splat(stage.weights[0][q + i])
-                .mul_add(plane_sums(change, i, &stage.weights[1]).0, sum);
+            sum = T::Row::splat(simd, stage.weights[0][q + i]).mul_add(
+                plane_sums::<S, T, D, K>(
+                    simd,
+                    plane::<T, D, K>(change, base, i, tile_edge),
+                    tile_edge,
+                    &stage.weights[1][q..],
+                )
+                .0,
+                sum,
+            );
         }
         (sum * w_row).fold(&mut stage.impulse[0][q..]);
     }
@@ -234,14 +274,29 @@ pub(super) fn gather<
         let (mut by_x, mut by_y, mut by_row) = (zero, zero, zero);
         for i in 0..K::NODES {
             let (w_i, g_i) = (
-                splat(stage.weights[0][q + i]),
-                splat(stage.gradients[0][q + i]),
+                T::Row::splat(simd, stage.weights[0][q + i]),
+                T::Row::splat(simd, stage.gradients[0][q + i]),
             );
-            let weighted = plane_sums(velocity, i, &stage.weights[1]).0;
+            let weighted = plane_sums::<S, T, D, K>(
+                simd,
+                plane::<T, D, K>(velocity, base, i, tile_edge),
+                tile_edge,
+                &stage.weights[1][q..],
+            )
+            .0;
             by_x = g_i.mul_add(weighted, by_x);
             by_row = w_i.mul_add(weighted, by_row);
             if D == 3 {
-                by_y = w_i.mul_add(plane_sums(velocity, i, &stage.gradients[1]).0, by_y);
+                by_y = w_i.mul_add(
+                    plane_sums::<S, T, D, K>(
+                        simd,
+                        plane::<T, D, K>(velocity, base, i, tile_edge),
+                        tile_edge,
+                        &stage.gradients[1][q..],
+                    )
+                    .0,
+                    by_y,
+                );
             }
         }
         (by_x * w_row).fold(&mut stage.impulse[1][q..]);

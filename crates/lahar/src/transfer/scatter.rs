@@ -3,7 +3,7 @@
 use super::{Scheme, Stage, rows, with_scheme};
 use crate::grid::tile_edge;
 use crate::kernel::BSpline;
-use crate::material::{CHUNK, IsaToken, Law, load_part};
+use crate::material::{CHUNK, IsaToken, load_part};
 use crate::math::{Lanes, Matrix, Real, Vector};
 use crate::parallel;
 use crate::setup::Transfer;
@@ -139,6 +139,21 @@ pub(super) fn load_each<S: Simd, T: Lanes>(
     }
 }
 
+/// A vector of a register of particles from its columns.
+#[inline(always)]
+fn load_vector<S: Simd, T: Lanes, const D: usize>(
+    simd: S,
+    columns: &[Vec<T>],
+    at: usize,
+    left: usize,
+) -> Vector<T::Of<S>, D> {
+    let mut v = Vector([load_part(simd, &columns[0][at..], left); D]);
+    for axis in 1..D {
+        v[axis] = load_part(simd, &columns[axis][at..], left);
+    }
+    v
+}
+
 /// The stencil of a register of particles: weights to the stage; returns s, the place from the base
 /// node in cells.
 #[inline(always)]
@@ -202,8 +217,9 @@ fn prepare<
     let mut p = 0;
     while p < count {
         let left = count - p;
-        let load = |column: usize| load_part(simd, &group.columns[column][start + p..], left);
-        let s = stencil::<S, T, D, K, CLASSIC>(Vector::from_fn(load), p, stage);
+        let columns = &group.columns[..];
+        let s =
+            stencil::<S, T, D, K, CLASSIC>(load_vector(simd, columns, start + p, left), p, stage);
         let m = load_each(simd, &group.mass, start + p, left);
         let zero = m.zero();
         let volume0 = load_each(simd, &group.volume0, start + p, left);
@@ -218,15 +234,18 @@ fn prepare<
             p += T::WIDTH;
             continue;
         }
-        let v = Vector::from_fn(|i| load(Layout::velocity(D) + i));
-        let tau = Matrix::<_, D>::from_fn(|i, j| {
-            T::load(simd, &stage.matrix[(j * D + i) * CHUNK + p..])
-        });
+        let v = load_vector(simd, &columns[Layout::velocity(D)..], start + p, left);
+        let tau =
+            Matrix::<_, D>::from_fn(|i, j| T::load(simd, &stage.matrix[(j * D + i) * CHUNK + p..]));
         // dx Q, column by column: its motion part and its stress part.
         let mut affine = Matrix::scaled_identity(zero);
         if apic {
-            let c = Matrix::<_, D>::from_fn(|i, j| load(Layout::affine(D) + j * D + i));
-            affine = c * (m * m.lit(dx));
+            let mass_dx = m * m.lit(dx);
+            for j in 0..D {
+                let column: Vector<_, D> =
+                    load_vector(simd, &columns[Layout::affine(D) + j * D..], start + p, left);
+                affine.0[j] = column * mass_dx;
+            }
         }
         // −Δt V⁰ D⁻¹ τ dx, or −Δt V⁰ τ / dx to be met by dx ∂w.
         let scale = if CLASSIC {

@@ -1,0 +1,152 @@
+//! Scenes that several tests run.
+#![expect(dead_code, reason = "each test program uses a part")]
+
+use lahar::material::{Corotated, Dust, Eos, Fluid, JacobianUpdate, NeoHookean, Snow, lame};
+use lahar::particles::{Data, Field, Snapshot};
+use lahar::{
+    Contact, Domain, Material, Model, ParticleBatch, Setup, Sides, Simulate, Simulation, TimeStep, WallStyle,
+};
+
+/// A small generator of even numbers, the same everywhere (splitmix64).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+}
+
+/// One of each model, soft enough that waves and particles are of like speed.
+pub fn one_of_each() -> Vec<Material> {
+    let (lambda, mu) = lame(2e3, 0.3);
+    let material = |name: &str, density, model| Material { name: name.into(), density, model };
+    vec![
+        material(
+            "water",
+            1000.0,
+            Model::Fluid(Fluid {
+                eos: Eos::Tait { gamma: 7.0 },
+                bulk_modulus: 1000.0 * 5.0 * 5.0,
+                viscosity: 0.5,
+                bulk_viscosity: 0.1,
+                tension: 0.0,
+                jacobian_update: JacobianUpdate::Trace,
+            }),
+        ),
+        material("jelly", 500.0, Model::Corotated(Corotated { lambda, mu })),
+        material("rubber", 800.0, Model::NeoHookean(NeoHookean { lambda, mu })),
+        material("snow", 400.0, Model::Snow(Snow { lambda, mu, ..Snow::new(1.4e5, 0.2) })),
+        material("dust", 100.0, Model::Dust(Dust)),
+    ]
+}
+
+/// A ball's worth of jittered particles of material `material`.
+pub fn ball<const D: usize>(
+    material: usize,
+    centre: [f64; D],
+    radius: f64,
+    dx: f64,
+    velocity: [f64; D],
+    random: &mut Random,
+) -> ParticleBatch<D> {
+    let spacing = dx / 2.0;
+    let n = (radius / spacing).ceil() as i32;
+    let mut position = Vec::new();
+    let mut index = [-n; D];
+    loop {
+        let offset: [f64; D] = core::array::from_fn(|a| f64::from(index[a]) * spacing);
+        if offset.iter().map(|x| x * x).sum::<f64>() < radius * radius {
+            position.push(core::array::from_fn(|a| {
+                centre[a] + offset[a] + random.between(-0.2, 0.2) * spacing
+            }));
+        }
+        let Some(axis) = (0..D).rev().find(|&a| index[a] < n) else { break };
+        index[axis] += 1;
+        index[axis + 1..].fill(-n);
+    }
+    ParticleBatch {
+        material,
+        body: material as u32,
+        position,
+        velocity: vec![velocity],
+        volume: vec![spacing.powi(D as i32)],
+        ..ParticleBatch::default()
+    }
+}
+
+/// Balls of all materials thrown at each other in a box of `cells` cells with separating walls.
+pub fn brawl<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatch<D>>) {
+    let dx = 1.0 / 32.0;
+    let size = dx * cells as f64;
+    let mut random = Random(7);
+    let materials = one_of_each();
+    let batches = (0..materials.len())
+        .map(|k| {
+            let angle = k as f64 * 1.3;
+            let mut centre = [0.5 * size; D];
+            centre[0] += 0.27 * size * angle.cos();
+            centre[1] += 0.27 * size * angle.sin();
+            let mut velocity = [0.3; D];
+            velocity[0] = -2.0 * angle.cos();
+            velocity[1] = -2.0 * angle.sin();
+            ball(k, centre, 0.13 * size, dx, velocity, &mut random)
+        })
+        .collect();
+    let mut setup = Setup::new(dx, materials);
+    let wall = Sides::Walls { low: Contact::Separate { friction: 0.1 }, high: Contact::Separate { friction: 0.0 } };
+    setup.domain =
+        Some(Domain { min: [0.0; D], max: [size; D], sides: [wall; D], style: WallStyle::Plane });
+    setup.gravity[1] = -9.81;
+    setup.time_step = TimeStep::Automatic { cfl: 0.3, longest: f64::INFINITY };
+    (setup, batches)
+}
+
+/// Everything a particle has.
+pub const ALL: &[Field] = &[
+    Field::Position,
+    Field::Velocity,
+    Field::Affine,
+    Field::Jacobian,
+    Field::DeformationGradient,
+    Field::PlasticJacobian,
+    Field::Mass,
+    Field::Material,
+    Field::Body,
+    Field::Id,
+];
+
+/// The bits of a snapshot, column after column.
+pub fn bits(snapshot: &Snapshot) -> Vec<u64> {
+    let mut all = vec![snapshot.time.to_bits()];
+    for (_, data) in &snapshot.columns {
+        match data {
+            Data::F32(v) => all.extend(v.iter().map(|x| u64::from(x.to_bits()))),
+            Data::F64(v) => all.extend(v.iter().map(|x| x.to_bits())),
+            Data::U32(v) => all.extend(v.iter().map(|&x| u64::from(x))),
+        }
+    }
+    all
+}
+
+/// Runs to `time` on `threads` threads.
+pub fn run_on<T: lahar::math::Lanes, const D: usize>(
+    threads: usize,
+    setup: &Setup<D>,
+    batches: &[ParticleBatch<D>],
+    time: f64,
+) -> Simulation<T, D> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    pool.install(|| {
+        let mut simulation = Simulation::<T, D>::new(setup.clone(), batches).expect("a good setup");
+        simulation.set_clock(|| 0.0);
+        simulation.advance_to(time).expect("it runs");
+        simulation
+    })
+}

@@ -1,0 +1,130 @@
+//! Same scene, same bits: over threads, over shifts by whole blocks, over looking at it.
+
+mod common;
+
+use common::{ALL, bits, brawl, run_on};
+use lahar::math::Lanes;
+use lahar::particles::Field;
+use lahar::{Isa, Simulate, Simulation, Transfer};
+
+/// Bits on 1, 2, 3 and 8 threads, over enough sorts that particles change blocks and order.
+fn same_bits_on_any_number_of_threads<T: Lanes, const D: usize>(cells: usize, time: f64, transfer: Transfer) {
+    let (mut setup, batches) = brawl::<D>(cells);
+    setup.transfer = transfer;
+    let one = run_on::<T, D>(1, &setup, &batches, time);
+    assert!(one.phase_times().sorts >= 7, "only {} sorts", one.phase_times().sorts);
+    let start = Simulation::<T, D>::new(setup.clone(), &batches).expect("a good setup");
+    let moved = (start.snapshot(&[Field::Position]).columns, one.snapshot(&[Field::Position]).columns);
+    let (before, after) = (moved.0[0].1.to_f64(), moved.1[0].1.to_f64());
+    let block = setup.dx * 8.0;
+    let crossed = before.iter().zip(&after).filter(|(a, b)| (*a / block).floor() != (*b / block).floor()).count();
+    assert!(crossed > before.len() / 20, "only {crossed} of {} coordinates changed block", before.len());
+    for threads in [2, 3, 8] {
+        let other = run_on::<T, D>(threads, &setup, &batches, time);
+        assert!(bits(&one.snapshot(ALL)) == bits(&other.snapshot(ALL)), "{threads} threads differ from one");
+    }
+}
+
+#[test]
+fn threads_do_not_change_bits_2d() {
+    same_bits_on_any_number_of_threads::<f32, 2>(64, 0.4, Transfer::Apic);
+}
+
+#[test]
+fn threads_do_not_change_bits_2d_f64_flip() {
+    same_bits_on_any_number_of_threads::<f64, 2>(64, 0.4, Transfer::Flip { blend: 0.97 });
+}
+
+#[test]
+fn threads_do_not_change_bits_3d() {
+    same_bits_on_any_number_of_threads::<f32, 3>(32, 0.3, Transfer::Apic);
+}
+
+/// The same scene elsewhere: everything but positions keeps its bits.
+fn same_bits_elsewhere<T: Lanes, const D: usize>(shift_cells: f64) {
+    let (mut setup, batches) = brawl::<D>(32);
+    setup.domain = None;
+    setup.gravity = [0.0; D];
+    let moved: Vec<_> = batches
+        .iter()
+        .cloned()
+        .map(|mut batch| {
+            for position in &mut batch.position {
+                // Rounded to a grid that both places can say exactly.
+                position.iter_mut().for_each(|x| *x = (*x * 1_048_576.0).round() / 1_048_576.0);
+            }
+            batch
+        })
+        .collect();
+    let shifted: Vec<_> = moved
+        .iter()
+        .cloned()
+        .map(|mut batch| {
+            for position in &mut batch.position {
+                position[0] += shift_cells * setup.dx;
+                position[D - 1] -= shift_cells * setup.dx;
+            }
+            batch
+        })
+        .collect();
+    let fields =
+        &[Field::Velocity, Field::Affine, Field::Jacobian, Field::DeformationGradient, Field::Mass, Field::Id];
+    let here = run_on::<T, D>(2, &setup, &moved, 0.25);
+    let there = run_on::<T, D>(2, &setup, &shifted, 0.25);
+    assert!(here.phase_times().sorts >= 5, "only {} sorts", here.phase_times().sorts);
+    assert!(bits(&here.snapshot(fields)) == bits(&there.snapshot(fields)));
+}
+
+#[test]
+fn a_shift_by_whole_blocks_does_not_change_bits() {
+    same_bits_elsewhere::<f32, 2>(8.0);
+    same_bits_elsewhere::<f32, 2>(-8.0 * 125_001.0);
+    same_bits_elsewhere::<f32, 3>(4.0);
+    same_bits_elsewhere::<f64, 3>(4.0 * 250_001.0);
+}
+
+#[test]
+fn looking_does_not_change_bits() {
+    let (setup, batches) = brawl::<2>(48);
+    let run = |look: bool| {
+        let mut simulation = Simulation::<f32, 2>::new(setup.clone(), &batches).expect("a good setup");
+        for frame in 1..=30 {
+            simulation.advance_to(f64::from(frame) / 100.0).expect("it runs");
+            if look {
+                let _ = simulation.diagnostics();
+                let _ = simulation.snapshot(ALL);
+            }
+        }
+        simulation.snapshot(ALL)
+    };
+    assert!(bits(&run(true)) == bits(&run(false)));
+}
+
+#[test]
+fn instruction_sets_agree_closely() {
+    let (mut setup, batches) = brawl::<3>(32);
+    setup.isa = Isa::Portable;
+    let portable = run_on::<f64, 3>(2, &setup, &batches, 0.1);
+    let reference = portable.snapshot(&[Field::Position]).columns[0].1.to_f64();
+    for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
+        setup.isa = isa;
+        let other = run_on::<f64, 3>(2, &setup, &batches, 0.1);
+        let positions = other.snapshot(&[Field::Position]).columns[0].1.to_f64();
+        let worst = reference.iter().zip(&positions).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(worst < 1e-9, "{}: {worst:e} m", isa.name());
+    }
+}
+
+#[test]
+fn distance_costs_no_memory() {
+    let memory = |apart: f64| {
+        let (mut setup, batches) = brawl::<3>(32);
+        setup.domain = None;
+        let mut drops = vec![batches[0].clone(), batches[0].clone()];
+        for position in &mut drops[1].position {
+            position[0] += apart * setup.dx;
+        }
+        Simulation::<f32, 3>::new(setup, &drops).expect("a good setup").memory()
+    };
+    assert_eq!(memory(64.0), memory(1_000_000.0));
+}
