@@ -7,10 +7,6 @@
 )]
 
 use std::process::ExitCode;
-use std::sync::Arc;
-
-#[path = "../tests/support/mod.rs"]
-mod support;
 
 fn main() -> ExitCode {
     let options = lahar_app::Options {
@@ -18,7 +14,7 @@ fn main() -> ExitCode {
         ..lahar_app::Options::default()
     };
     println!("{}", lahar_app::key_help());
-    match lahar_app::run_with(options, Arc::new(support::Blocks)) {
+    match lahar_app::run(options) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("{error}");

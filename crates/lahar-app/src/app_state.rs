@@ -6,7 +6,7 @@ use std::sync::Arc;
 use eframe::egui::{self, Color32};
 use lahar::{Command, Field, Pointer, PointerAction, Snapshot};
 
-use crate::camera::{Camera, V3, add, corners, length, scale, sub};
+use crate::camera::{Camera, V3, add, against, corners, length, scale, sub};
 use crate::colour::{self, ColourBy, Range};
 use crate::controls::{Action, Direction};
 use crate::renderer::{Line, Picture, Sprite, View};
@@ -70,7 +70,7 @@ pub struct AppState {
     pub gravity: V3,
     /// What particles are coloured by.
     pub colour_by: ColourBy,
-    /// Colours of the materials, by index.
+    /// Colours of the scene's swatches, by index.
     pub palette: Vec<Color32>,
     /// Low and high end of the legend.
     pub range: Range,
@@ -100,10 +100,11 @@ pub struct AppState {
     origin: V3,
     extent: (V3, V3),
     recolour: bool,
+    refit: bool,
 }
 
 /// Radius in parts of the spacing: discs that leave no holes between jittered particles.
-const RADIUS_2D: f32 = 0.8;
+const RADIUS_2D: f32 = 0.95;
 /// Balls need less: those behind fill the gaps.
 const RADIUS_3D: f32 = 0.65;
 /// Speeds that + and − step through.
@@ -142,6 +143,7 @@ impl AppState {
             origin: [0.0; 3],
             extent: ([0.0; 3], [1.0; 3]),
             recolour: false,
+            refit: true,
         };
         state.open(scene.unwrap_or(default_scene).to_owned());
         state
@@ -231,6 +233,7 @@ impl AppState {
     pub fn open(&mut self, name: String) {
         self.scene.clone_from(&name);
         self.show_scenes = false;
+        self.refit = true;
         self.order(Order::Open(name));
     }
 
@@ -364,7 +367,10 @@ impl AppState {
             self.range.forget();
             let another = scene_before.as_ref() != Some(&facts.card.name);
             if another {
-                self.palette = colour::palette(&facts.materials);
+                if self.colour_by != facts.angle.colour_by && scene_before.is_none() {
+                    self.set_colour_by(facts.angle.colour_by);
+                }
+                self.palette = colour::palette(&facts.swatches);
                 self.radius = if facts.dimension == 2 {
                     RADIUS_2D
                 } else {
@@ -374,7 +380,7 @@ impl AppState {
             self.extent = extent(&facts, self.shown.snapshot.as_deref());
             self.origin = scale(add(self.extent.0, self.extent.1), 0.5);
             self.lines = Arc::new(outline(&facts, self.extent, self.origin));
-            if another || self.camera.is_none() {
+            if core::mem::take(&mut self.refit) {
                 self.fit();
             }
         }
@@ -384,12 +390,11 @@ impl AppState {
     /// The whole scene in view.
     fn fit(&mut self) {
         let Some(facts) = self.facts() else { return };
-        let (min, max) = self.extent;
         self.camera = Some(Camera::fit(
             facts.dimension,
-            min,
-            max,
+            self.extent,
             facts.gravity,
+            facts.angle.direction,
             self.aspect,
         ));
     }
@@ -412,8 +417,14 @@ impl AppState {
                 unused: 0.0,
             },
             solid: camera.dimension == 3,
-            background: colour::BACKGROUND,
+            background: self.background(),
         })
+    }
+
+    /// The colour behind everything.
+    pub fn background(&self) -> Color32 {
+        let own = self.facts().and_then(|facts| facts.angle.background);
+        own.map_or(colour::BACKGROUND, |[r, g, b]| Color32::from_rgb(r, g, b))
     }
 
     fn make_sprites(&mut self) {
@@ -518,7 +529,7 @@ fn outline(facts: &Facts, (min, max): (V3, V3), origin: V3) -> Vec<Line> {
         }
     }
     if facts.dimension == 3 {
-        let up = Camera::fit(3, min, max, facts.gravity, 1.0).up;
+        let up = against(facts.gravity);
         let vertical = (0..3).find(|&i| up[i] != 0.0).unwrap_or(1);
         let floor = if up[vertical] > 0.0 {
             min[vertical]

@@ -63,7 +63,13 @@ const STEEPEST: f64 = 1.5;
 
 impl Camera {
     /// Sees the whole box in a window of `aspect` = width/height; down is where gravity pulls.
-    pub fn fit(dimension: usize, min: V3, max: V3, gravity: V3, aspect: f64) -> Self {
+    pub fn fit(
+        dimension: usize,
+        (min, max): (V3, V3),
+        gravity: V3,
+        direction: Option<V3>,
+        aspect: f64,
+    ) -> Self {
         let size = sub(max, min);
         let target = scale(add(min, max), 0.5);
         let reach = 0.5 * length(size).max(1e-9);
@@ -80,6 +86,9 @@ impl Camera {
             },
             reach,
         };
+        if let Some(direction) = direction {
+            camera.look_from(direction);
+        }
         camera.half_height = if dimension == 2 {
             0.5 * MARGIN * size[1].max(size[0] / aspect)
         } else {
@@ -99,17 +108,33 @@ impl Camera {
         camera
     }
 
-    /// The camera's axes: right, up, and back (towards the eye).
-    pub fn axes(&self) -> [V3; 3] {
-        if self.dimension == 2 {
-            return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    /// Looks from this direction, seen from the target; 3D.
+    pub fn look_from(&mut self, direction: V3) {
+        let back = normalize(direction);
+        let [side, front] = self.level_axes();
+        if self.dimension == 3 && length(direction) > 0.0 {
+            self.pitch = dot(back, self.up).clamp(-1.0, 1.0).asin();
+            self.pitch = self.pitch.clamp(-STEEPEST, STEEPEST);
+            self.yaw = dot(back, side).atan2(dot(back, front));
         }
+    }
+
+    /// Two axes on the horizon; from yaw 0, the eye is towards the second.
+    fn level_axes(&self) -> [V3; 2] {
         let side = if self.up[0] == 0.0 {
             [1.0, 0.0, 0.0]
         } else {
             [0.0, 1.0, 0.0]
         };
-        let front = cross(side, self.up);
+        [side, cross(side, self.up)]
+    }
+
+    /// The camera's axes: right, up, and back (towards the eye).
+    pub fn axes(&self) -> [V3; 3] {
+        if self.dimension == 2 {
+            return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        }
+        let [side, front] = self.level_axes();
         let level = add(scale(side, self.yaw.sin()), scale(front, self.yaw.cos()));
         let back = add(
             scale(level, self.pitch.cos()),
@@ -242,7 +267,7 @@ impl Camera {
 }
 
 /// The signed axis that points most against `v`; +y if there is none.
-fn against(v: V3) -> V3 {
+pub fn against(v: V3) -> V3 {
     let mut axis = 1;
     for i in [0, 2] {
         if v[i].abs() > v[axis].abs() {
@@ -275,9 +300,15 @@ mod tests {
 
     fn cameras() -> [Camera; 3] {
         [
-            Camera::fit(2, [0.0; 3], [4.0, 2.0, 0.0], DOWN, 1.5),
-            Camera::fit(3, [0.0; 3], [4.0, 2.0, 1.0], DOWN, 1.5),
-            Camera::fit(3, [-1.0; 3], [4.0, 2.0, 1.0], [0.0, 0.0, -9.81], 0.7),
+            Camera::fit(2, ([0.0; 3], [4.0, 2.0, 0.0]), DOWN, None, 1.5),
+            Camera::fit(3, ([0.0; 3], [4.0, 2.0, 1.0]), DOWN, None, 1.5),
+            Camera::fit(
+                3,
+                ([-1.0; 3], [4.0, 2.0, 1.0]),
+                [0.0, 0.0, -9.81],
+                None,
+                0.7,
+            ),
         ]
     }
 
@@ -326,6 +357,15 @@ mod tests {
                 assert!((f64::from(clip[i] / clip[3]) - expected[i]).abs() < 1e-5);
             }
             assert!((0.0..1.0).contains(&(clip[2] / clip[3])));
+        }
+    }
+
+    #[test]
+    fn a_direction_given_is_the_direction_looked_from() {
+        for mut camera in cameras().into_iter().skip(1) {
+            let from = normalize([0.3, 0.4, 0.8]);
+            camera.look_from(from);
+            assert!(length(sub(camera.axes()[2], from)) < 1e-12);
         }
     }
 

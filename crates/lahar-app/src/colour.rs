@@ -3,7 +3,7 @@
 use eframe::egui::Color32;
 use lahar::{Field, Snapshot};
 
-use crate::scenes::{Look, MaterialCard};
+use crate::scenes::{Look, Swatch};
 use crate::solver::Facts;
 
 /// Behind everything (Taichi's examples: 0x112F41).
@@ -135,7 +135,7 @@ impl ColourBy {
         Some(match self {
             Self::Material => (0.0, 1.0),
             Self::Speed => (0.0, high),
-            Self::Pressure => (low.min(0.0), high),
+            Self::Pressure => (if -low < 1e-3 * high { 0.0 } else { low }, high),
             // Symmetric about rest, which is what most particles are near.
             Self::Density => around(quantile(0.5), low, high),
             Self::Jacobian => around(1.0, low, high),
@@ -224,8 +224,8 @@ pub fn along(ramp: &[Color32], at: f32) -> Color32 {
     a.lerp_to_gamma(b, at - i as f32)
 }
 
-/// Colours of the materials, by index; the person at the window may change them.
-pub fn palette(materials: &[MaterialCard]) -> Vec<Color32> {
+/// Colours of the swatches at first; the person at the window may change them.
+pub fn palette(swatches: &[Swatch]) -> Vec<Color32> {
     /// For the second of a look, and for what has none.
     const OTHERS: [Color32; 6] = [
         Color32::from_rgb(0xe9, 0xb4, 0x4c),
@@ -237,12 +237,15 @@ pub fn palette(materials: &[MaterialCard]) -> Vec<Color32> {
     ];
     let mut used: Vec<Look> = vec![];
     let mut others = OTHERS.iter().cycle().copied();
-    materials
+    swatches
         .iter()
-        .map(|material| {
-            let first = !used.contains(&material.look);
-            used.push(material.look);
-            let own = match material.look {
+        .map(|swatch| {
+            if let Some([r, g, b]) = swatch.colour {
+                return Color32::from_rgb(r, g, b);
+            }
+            let first = !used.contains(&swatch.look);
+            used.push(swatch.look);
+            let own = match swatch.look {
                 Look::Liquid => Some(LIQUID),
                 Look::Jelly => Some(JELLY),
                 Look::Snow => Some(SNOW),
@@ -283,20 +286,18 @@ pub fn colours(
             })
             .collect();
     }
-    let of = |material: usize| {
-        palette
-            .get(material)
-            .copied()
-            .unwrap_or(if facts.dimension == 2 {
-                LIQUID
-            } else {
-                Color32::GRAY
-            })
-            .to_array()
-    };
-    match snapshot.get(Field::Material) {
-        Some(lahar::Data::U32(material)) => material.iter().map(|&m| of(m as usize)).collect(),
-        _ => vec![of(0); snapshot.count],
+    let first = palette.first().copied().unwrap_or(LIQUID).to_array();
+    let of_body: Vec<[u8; 4]> = facts
+        .body_swatches
+        .iter()
+        .map(|&swatch| palette.get(swatch).map_or(first, Color32::to_array))
+        .collect();
+    match snapshot.get(Field::Body) {
+        Some(lahar::Data::U32(bodies)) => bodies
+            .iter()
+            .map(|&body| of_body.get(body as usize).copied().unwrap_or(first))
+            .collect(),
+        _ => vec![first; snapshot.count],
     }
 }
 
@@ -336,11 +337,12 @@ mod tests {
 
     #[test]
     fn the_lineage_colours_are_theirs_and_a_second_liquid_has_its_own() {
-        let material = |look| MaterialCard {
+        let swatch = |look| Swatch {
             name: String::new(),
             look,
+            colour: None,
         };
-        let palette = palette(&[Look::Liquid, Look::Jelly, Look::Snow, Look::Liquid].map(material));
+        let palette = palette(&[Look::Liquid, Look::Jelly, Look::Snow, Look::Liquid].map(swatch));
         assert_eq!(palette[..3], [LIQUID, JELLY, SNOW]);
         assert!(!palette[..3].contains(&palette[3]));
     }

@@ -31,7 +31,8 @@ use eframe::egui_wgpu::{WgpuSetup, WgpuSetupCreateNew, wgpu};
 
 use app_state::AppState;
 pub use controls::key_help;
-use scenes::SceneSource;
+use lahar::Isa;
+use scenes::{SceneSource, Shelf};
 use solver::Solver;
 use window::Window;
 
@@ -40,6 +41,10 @@ use window::Window;
 pub struct Options {
     /// The scene to open, by a built-in's name or a path; `None`: the default one.
     pub scene: Option<String>,
+    /// Keys and values laid over every scene, as `--set` on the command line.
+    pub overrides: Vec<(String, String)>,
+    /// The instruction set to run on.
+    pub isa: Isa,
     /// Size of the window in points.
     pub size: [f32; 2],
     /// Where F12 puts its pictures.
@@ -51,6 +56,8 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             scene: None,
+            overrides: vec![],
+            isa: Isa::detect(),
             size: [1180.0, 720.0],
             screenshots: PathBuf::from("."),
         }
@@ -83,8 +90,21 @@ impl fmt::Display for AppError {
 
 impl std::error::Error for AppError {}
 
-/// Opens the window on scenes from `source`, and returns when it is closed. Call it on the main
-/// thread, once a process.
+/// Opens the window on the scenes that ship with lahar and on scene files, and returns when it is
+/// closed. Call it on the main thread, once a process.
+///
+/// # Errors
+/// There is no display, no adapter, or the window did not open. A scene that cannot be opened is no
+/// error: the window shows what is wrong.
+pub fn run(options: Options) -> Result<(), AppError> {
+    let shelf = Shelf {
+        isa: options.isa,
+        overrides: options.overrides.clone(),
+    };
+    run_with(options, Arc::new(shelf))
+}
+
+/// [`run`] with scenes from elsewhere.
 ///
 /// # Errors
 /// There is no display, no adapter, or the window did not open. A scene that cannot be opened is no

@@ -119,10 +119,10 @@ fn gravity(state: &mut AppState, ui: &mut Ui) {
     }
     ui.horizontal(|ui| {
         for (label, name, direction) in [
-            ("⬅", "left (A)", Direction::Left),
-            ("➡", "right (D)", Direction::Right),
-            ("⬆", "up (W)", Direction::Up),
-            ("⬇", "down (S)", Direction::Down),
+            ("←", "left (A)", Direction::Left),
+            ("→", "right (D)", Direction::Right),
+            ("↑", "up (W)", Direction::Up),
+            ("↓", "down (S)", Direction::Down),
         ] {
             let text = format!("Gravity to the window's {name}");
             if ui.button(label).on_hover_text(text).clicked() {
@@ -162,7 +162,7 @@ fn looks(state: &mut AppState, ui: &mut Ui) {
     if state.colour_by == ColourBy::Material {
         let names: Vec<String> = state
             .facts()
-            .map(|facts| facts.materials.iter().map(|m| m.name.clone()).collect())
+            .map(|facts| facts.swatches.iter().map(|s| s.name.clone()).collect())
             .unwrap_or_default();
         let mut changed = false;
         for (colour, name) in state.palette.iter_mut().zip(&names) {

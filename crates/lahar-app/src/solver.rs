@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use lahar::{Advance, Command, DtLimit, Failure, Field, Simulate, Snapshot};
 use triple_buffer::{Input, Output, TripleBuffer};
 
-use crate::scenes::{MaterialCard, SceneCard, SceneSource, Stage};
+use crate::scenes::{Angle, SceneCard, SceneSource, Stage, Swatch};
 
 /// What the window may ask of the solver.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,7 +40,7 @@ pub enum Order {
 }
 
 /// Fields that every snapshot has.
-pub const ALWAYS: [Field; 3] = [Field::Position, Field::Material, Field::Volume0];
+pub const ALWAYS: [Field; 3] = [Field::Position, Field::Body, Field::Volume0];
 
 /// What stays the same while a scene runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,8 +57,12 @@ pub struct Facts {
     pub gravity: [f64; 3],
     /// Frames per simulated second \[1/s\].
     pub frame_rate: f64,
-    /// By index.
-    pub materials: Vec<MaterialCard>,
+    /// What there is to see.
+    pub swatches: Vec<Swatch>,
+    /// Index into `swatches`, by the number of a body.
+    pub body_swatches: Vec<usize>,
+    /// How the scene wants to be looked at.
+    pub angle: Angle,
     /// "f32" or "f64", and the instruction set.
     pub numbers: String,
     /// What the scene's author should know though it runs.
@@ -308,7 +312,9 @@ impl Worker {
             domain: simulation.domain(),
             gravity: simulation.gravity(),
             frame_rate: stage.frame_rate,
-            materials: stage.materials,
+            swatches: stage.swatches,
+            body_swatches: stage.body_swatches,
+            angle: stage.angle,
             numbers: format!("{}, {}", simulation.precision(), simulation.isa().name()),
             warnings: stage.warnings,
             card: stage.card,

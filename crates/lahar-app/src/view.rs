@@ -24,7 +24,7 @@ pub fn window(state: &mut AppState, ui: &mut Ui) {
             .show(ui, |ui| panel(state, ui));
     }
     egui::CentralPanel::default()
-        .frame(egui::Frame::NONE.fill(colour::BACKGROUND))
+        .frame(egui::Frame::NONE.fill(state.background()))
         .show(ui, |ui| {
             let size = ui.available_size();
             let (rect, response) = ui.allocate_exact_size(size, Sense::drag());
@@ -161,41 +161,34 @@ fn hand(state: &AppState, ui: &Ui, rect: Rect) {
     painter.circle_filled(centre, 3.0, colour);
 }
 
-/// What the colours mean.
+/// What the colours mean, under the title.
 fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     let painter = ui.painter_at(rect);
     let font = FontId::proportional(13.0);
     let Some(facts) = state.facts() else { return };
+    let corner = rect.left_top() + vec2(14.0, if state.show_panel { 40.0 } else { 60.0 });
     if state.colour_by == ColourBy::Material {
-        if facts.materials.len() < 2 {
-            return; // one material needs no telling apart
+        if facts.swatches.len() < 2 {
+            return; // one needs no telling apart
         }
-        let mut at = rect.right_top() + vec2(-16.0, 16.0);
-        for (material, colour) in facts.materials.iter().zip(&state.palette) {
-            let text = painter.text(at, Align2::RIGHT_TOP, &material.name, font.clone(), INK);
-            painter.circle_filled(text.left_center() - vec2(11.0, 0.0), 5.0, *colour);
-            at.y += 20.0;
+        for (i, (swatch, colour)) in facts.swatches.iter().zip(&state.palette).enumerate() {
+            let at = corner + vec2(6.0, 8.0 + 20.0 * i as f32);
+            painter.circle_filled(at, 5.0, *colour);
+            let at = at + vec2(12.0, 0.0);
+            painter.text(at, Align2::LEFT_CENTER, &swatch.name, font.clone(), INK);
         }
         return;
     }
-    let bar = Rect::from_min_size(rect.right_top() + vec2(-34.0, 40.0), vec2(14.0, 150.0));
-    let shade = Rect::from_min_max(
-        bar.left_top() - vec2(76.0, 32.0),
-        bar.right_bottom() + vec2(8.0, 12.0),
-    );
+    let shade = Rect::from_min_size(corner - vec2(4.0, 0.0), vec2(128.0, 188.0));
     painter.rect_filled(shade, CornerRadius::same(4), SHADE);
     let unit = state.colour_by.unit(facts.dimension);
     let mut title = state.colour_by.name().to_owned();
     if !unit.is_empty() {
         title = format!("{title} [{unit}]");
     }
-    painter.text(
-        shade.right_top() + vec2(-8.0, 6.0),
-        Align2::RIGHT_TOP,
-        title,
-        font.clone(),
-        INK,
-    );
+    let at = shade.left_top() + vec2(8.0, 6.0);
+    painter.text(at, Align2::LEFT_TOP, title, font.clone(), INK);
+    let bar = Rect::from_min_size(shade.left_top() + vec2(10.0, 30.0), vec2(14.0, 146.0));
     let steps = 64;
     for i in 0..steps {
         let at = |k: i32| bar.bottom() - bar.height() * k as f32 / steps as f32;
@@ -205,8 +198,8 @@ fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     }
     let (low, high) = state.range.ends();
     for (part, value) in [(0.0, low), (0.5, 0.5 * (low + high)), (1.0, high)] {
-        let at = pos2(bar.left() - 6.0, bar.bottom() - bar.height() * part);
-        painter.text(at, Align2::RIGHT_CENTER, short(value), font.clone(), INK);
+        let at = pos2(bar.right() + 7.0, bar.bottom() - bar.height() * part);
+        painter.text(at, Align2::LEFT_CENTER, short(value), font.clone(), INK);
     }
 }
 
@@ -285,7 +278,7 @@ fn status(state: &AppState, ui: &Ui, rect: Rect) {
     }
 }
 
-/// The keys, at the lower left.
+/// The keys at the upper right, where scenes have their air; the scenes along the bottom.
 fn hints(state: &AppState, ui: &Ui, rect: Rect) {
     let solid = state.facts().is_some_and(|facts| facts.dimension == 3);
     let mouse = if solid {
@@ -295,52 +288,35 @@ fn hints(state: &AppState, ui: &Ui, rect: Rect) {
     };
     let font = FontId::proportional(12.0);
     let painter = ui.painter_at(rect);
-    let rows: Vec<&Hint> = KEY_HINTS.iter().chain(mouse).collect();
-    let scenes = state
-        .scenes
-        .iter()
-        .take(9)
-        .enumerate()
-        .map(|(i, card)| format!("{} {}", i + 1, card.name))
-        .collect::<Vec<_>>();
     let height = 16.0;
-    // Scenes run along the bottom; the table of keys stands on them.
-    let lines = wrap(&painter, &font, &scenes, rect.width() - 150.0);
-    let total = height * (rows.len() + lines.len()) as f32 + 22.0;
-    if total > rect.height() {
-        return;
+
+    let scenes: Vec<String> = (state.scenes.iter().take(9).enumerate())
+        .map(|(i, card)| format!("{} {}", i + 1, card.name))
+        .collect();
+    let lines = wrap(&painter, &font, &scenes, rect.width() - 190.0);
+    for (i, line) in lines.iter().rev().enumerate() {
+        let at = rect.left_bottom() + vec2(14.0, -8.0 - height * i as f32);
+        painter.text(at, Align2::LEFT_BOTTOM, line, font.clone(), INK);
     }
-    let top = rect.bottom() - total - 8.0;
-    let left = rect.left() + 12.0;
-    let table = Rect::from_min_size(
-        pos2(left - 6.0, top),
-        vec2(
-            410.0_f32.min(rect.width() - 12.0),
-            height * rows.len() as f32 + 8.0,
-        ),
-    );
-    painter.rect_filled(table, CornerRadius::same(4), Color32::from_black_alpha(90));
+
+    let rows: Vec<&Hint> = KEY_HINTS.iter().chain(mouse).collect();
+    let size = vec2(400.0, height * rows.len() as f32 + 12.0);
+    let table = Rect::from_min_size(rect.right_top() + vec2(-size.x - 10.0, 10.0), size);
+    if !rect.contains_rect(table) {
+        return; // the panel's tooltips name the keys too
+    }
+    painter.rect_filled(table, CornerRadius::same(4), Color32::from_black_alpha(80));
     for (i, hint) in rows.iter().enumerate() {
-        let y = top + 4.0 + height * i as f32;
-        let strong = Color32::WHITE;
+        let at = table.left_top() + vec2(10.0, 6.0 + height * i as f32);
         painter.text(
-            pos2(left, y),
+            at,
             Align2::LEFT_TOP,
             hint.keys,
             font.clone(),
-            strong,
+            Color32::WHITE,
         );
-        painter.text(
-            pos2(left + 118.0, y),
-            Align2::LEFT_TOP,
-            hint.does,
-            font.clone(),
-            INK,
-        );
-    }
-    for (i, line) in lines.iter().enumerate() {
-        let y = table.bottom() + 8.0 + height * i as f32;
-        painter.text(pos2(left, y), Align2::LEFT_TOP, line, font.clone(), INK);
+        let at = at + vec2(118.0, 0.0);
+        painter.text(at, Align2::LEFT_TOP, hint.does, font.clone(), INK);
     }
 }
 
@@ -412,7 +388,7 @@ fn messages(state: &mut AppState, ui: &Ui, rect: Rect) {
 
 /// Text on a dark card.
 fn card(painter: &egui::Painter, rect: Rect, centre: Pos2, text: &str, edge: Color32) {
-    let width = (rect.width() - 60.0).clamp(60.0, 620.0);
+    let width = (rect.width() - 60.0).clamp(60.0, 760.0);
     let text = painter.layout(
         text.to_owned(),
         FontId::proportional(15.0),

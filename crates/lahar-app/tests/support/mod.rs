@@ -5,7 +5,7 @@ use lahar::{
     Contact, Domain, Isa, Material, Model, ParticleBatch, Setup, Sides, Simulate, Simulation,
     WallStyle,
 };
-use lahar_app::scenes::{Look, MaterialCard, SceneCard, SceneSource, Stage};
+use lahar_app::scenes::{Angle, Look, SceneCard, SceneSource, Stage, Swatch};
 
 /// Two blocks of water in 2D, one in 3D, and a scene that cannot be opened.
 pub(crate) struct Blocks;
@@ -40,10 +40,13 @@ impl SceneSource for Blocks {
             card,
             simulation,
             frame_rate: 60.0,
-            materials: vec![MaterialCard {
+            swatches: vec![Swatch {
                 name: "water".into(),
                 look: Look::Liquid,
+                colour: None,
             }],
+            body_swatches: vec![0],
+            angle: Angle::default(),
             warnings: vec![],
         })
     }
