@@ -251,11 +251,11 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
                 let from = &tile[plane * self.tile_plane()..];
                 let to = &mut nodes[plane * BLOCK_NODES * QUAD..];
                 self.rows(link, |block_at, tile_at, len| {
-                    for (sum, &part) in to[block_at..block_at + len]
-                        .iter_mut()
-                        .zip(&from[tile_at..tile_at + len])
-                    {
-                        *sum += part;
+                    let sums = to[block_at..block_at + len].chunks_exact_mut(QUAD);
+                    for (sum, part) in sums.zip(from[tile_at..tile_at + len].chunks_exact(QUAD)) {
+                        for lane in 0..QUAD {
+                            sum[lane] += part[lane];
+                        }
                     }
                 });
             }
@@ -342,7 +342,11 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
                 let from = &block[plane * BLOCK_NODES * QUAD..];
                 let to = &mut out[plane * self.tile_plane()..];
                 self.rows(link, |block_at, tile_at, len| {
-                    to[tile_at..tile_at + len].copy_from_slice(&from[block_at..block_at + len]);
+                    // Quad by quad: rows are too short for a call to the system's copy.
+                    let copies = to[tile_at..tile_at + len].chunks_exact_mut(QUAD);
+                    for (copy, node) in copies.zip(from[block_at..block_at + len].chunks_exact(QUAD)) {
+                        copy.copy_from_slice(node);
+                    }
                 });
             }
         }

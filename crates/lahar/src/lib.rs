@@ -11,6 +11,7 @@ pub mod material;
 pub mod math;
 mod parallel;
 pub mod particles;
+pub mod reference;
 pub mod setup;
 pub mod simulation;
 mod snapshot;

@@ -6,7 +6,7 @@
 //! some particle may have moved by more than that ([`DRIFT_LIMIT`]).
 
 use crate::boundary::walls::Walls;
-use crate::math::{Lanes, Real};
+use crate::math::Lanes;
 use crate::store::{BLOCK_LIMIT, Group, PerParticle, Run, block_edge};
 use std::collections::HashMap;
 

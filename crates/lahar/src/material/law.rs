@@ -5,7 +5,7 @@
 //! code is a sum of laws and transfers and not their product, and so that laws from outside the
 //! crate run as fast as ours.
 
-use super::{ConstitutiveModel, Model, Strain};
+use super::{ConstitutiveModel, Model, Strain, for_model};
 use crate::dispatch::on_level;
 use crate::math::{Lanes, Matrix, Real};
 use fearless_simd::{Level, Simd};
@@ -69,13 +69,7 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
 
 /// The law of a built-in model.
 pub(crate) fn built_in<T: Lanes, const D: usize>(model: &Model) -> Box<dyn Law<T, D>> {
-    match *model {
-        Model::Dust(model) => law(model),
-        Model::Fluid(model) => law(model),
-        Model::Corotated(model) => law(model),
-        Model::NeoHookean(model) => law(model),
-        Model::Snow(model) => law(model),
-    }
+    for_model!(*model, model => law(model))
 }
 
 /// The law of any model, your own included; see [`crate::Simulation::with_laws`].

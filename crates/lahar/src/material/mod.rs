@@ -6,21 +6,25 @@
 mod corotated;
 mod fluid;
 mod law;
+mod model;
 mod neo_hookean;
 mod none;
+pub mod presets;
 mod snow;
 mod strain;
 
 pub use corotated::Corotated;
-pub use fluid::{Eos, Fluid, JacobianUpdate};
+pub use fluid::{Eos, Fluid, JacobianUpdate, SMALLEST_JACOBIAN};
 pub(crate) use law::{CHUNK, built_in, load_part, store_part};
 pub use law::{IsaToken, Law, ParticleState, law};
-pub use neo_hookean::NeoHookean;
+pub use neo_hookean::{LOGARITHM_ENDS, NeoHookean};
 pub use none::Dust;
+pub use presets::{PRESETS, preset};
 pub use snow::{HardeningFrom, Snow};
 pub use strain::{Dilatation, DisplacementGradient, PlasticGradient, Strain};
 
 use crate::math::{Matrix, Real};
+use strain::{largest_squared_stretch, left_strain};
 
 /// A law: stress and energy from strain, and how strain follows the motion.
 ///
@@ -49,7 +53,8 @@ pub trait ConstitutiveModel<const D: usize>: Copy + Send + Sync {
     /// stiffness ∂²Φ/∂F² in this state, in the current configuration.
     fn wave_modulus<R: Real>(&self, strain: Self::Strain<R>) -> R;
 
-    /// Dynamic viscosity \[Pa s\], the largest of the law's, for the time step.
+    /// Dynamic viscosity \[Pa s\], the largest of the law's (of shear or of longitudinal waves),
+    /// for the time step.
     fn viscosity(&self) -> f64 {
         0.0
     }
@@ -81,11 +86,36 @@ pub enum Model {
     Snow(Snow),
 }
 
-/// Lamé's parameters from Young's modulus and Poisson's ratio: (λ, μ) \[Pa\].
+/// Runs `$body` with `$law` bound to the law inside the [`Model`] `$model`, compiled once for each
+/// type of law: the one place where a run-time choice of a law becomes static dispatch.
+///
+/// ```text
+/// for_model!(material.model, law => self.scatter_with(&law))
+/// ```
+macro_rules! for_model {
+    ($model:expr, $law:ident => $body:expr) => {
+        match $model {
+            $crate::material::Model::Dust($law) => $body,
+            $crate::material::Model::Fluid($law) => $body,
+            $crate::material::Model::Corotated($law) => $body,
+            $crate::material::Model::NeoHookean($law) => $body,
+            $crate::material::Model::Snow($law) => $body,
+        }
+    };
+}
+pub(crate) use for_model;
+
+/// Lamé's parameters from Young's modulus \[Pa\] and Poisson's ratio: (λ, μ) \[Pa\]. In 2D these
+/// are those of plane strain.
 pub fn lame(youngs_modulus: f64, poisson_ratio: f64) -> (f64, f64) {
     let (e, nu) = (youngs_modulus, poisson_ratio);
     (
         e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
         e / (2.0 * (1.0 + nu)),
     )
+}
+
+/// Lamé's parameters from the bulk modulus K and the shear modulus G: (K − ⅔G, G) \[Pa\].
+pub fn lame_from_bulk_and_shear(bulk_modulus: f64, shear_modulus: f64) -> (f64, f64) {
+    (bulk_modulus - shear_modulus * 2.0 / 3.0, shear_modulus)
 }

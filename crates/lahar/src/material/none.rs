@@ -20,7 +20,7 @@ impl<const D: usize> ConstitutiveModel<D> for Dust {
         let e = strain.jacobian_minus_one;
         let change = increment.determinant_of_identity_plus_minus_one();
         Dilatation {
-            jacobian_minus_one: e + change + e * change,
+            jacobian_minus_one: e + change + e * change, // (7)
         }
     }
 

@@ -3,6 +3,7 @@
 //! Differences from rest are stored, J − 1 and H = F − I: in `f32`, J itself drifts (.04 % of a
 //! tank's height in 5·10⁴ substeps), and small strains drown in the rounding of the 1.
 
+use crate::math::near_one::power_minus_one;
 use crate::math::{Matrix, Real};
 
 /// A particle's strain in one number or register `R`.
@@ -17,7 +18,7 @@ pub trait Strain<R: Real, const D: usize>: Copy {
     fn write(&self, column: impl FnMut(usize, R));
     /// The strain of the deformation gradient I + H, as little of it as this one keeps.
     fn from_displacement_gradient(h: Matrix<R, D>) -> Self;
-    /// H = F − I; for strains that keep J only, (J^(1/D) − 1) I.
+    /// H = F − I; for strains that keep J only, (J^(1/D) − 1) I, and −I for J < 0.
     fn displacement_gradient(&self) -> Matrix<R, D>;
     /// J − 1.
     fn jacobian_minus_one(&self) -> R;
@@ -53,6 +54,35 @@ pub struct PlasticGradient<R, const D: usize> {
     pub hardening_jacobian_minus_one: R,
 }
 
+impl<R: Real, const D: usize> DisplacementGradient<R, D> {
+    /// F ← (I + A) F, A = Δt ∂v/∂x: equation (7) before any return mapping.
+    #[inline(always)]
+    pub fn moved(self, increment: Matrix<R, D>) -> Self {
+        Self {
+            h: self.h + (increment + increment * self.h), // (7)
+        }
+    }
+}
+
+/// FFᵀ − I, from H.
+#[inline(always)]
+pub(super) fn left_strain<R: Real, const D: usize>(h: Matrix<R, D>) -> Matrix<R, D> {
+    (h + h.transpose()) + h * h.transpose()
+}
+
+/// No less than the largest eigenvalue of FFᵀ; that eigenvalue in 2D and at rest.
+///
+/// Mean plus √(D−1) standard deviations of the eigenvalues (H. Wolkowicz & G. Styan, "Bounds for
+/// eigenvalues using traces", Linear Algebra Appl. 29, 1980).
+#[inline(always)]
+pub(super) fn largest_squared_stretch<R: Real, const D: usize>(h: Matrix<R, D>) -> R {
+    let strain = left_strain(h);
+    let mean = strain.trace() * h[(0, 0)].lit(1.0 / D as f64);
+    let deviator = strain - Matrix::scaled_identity(mean);
+    let spread = deviator.squared_norm() * mean.lit((D as f64 - 1.0) / D as f64);
+    mean.one() + mean + spread.sqrt()
+}
+
 impl<R: Real, const D: usize> Strain<R, D> for Dilatation<R> {
     const COLUMNS: usize = 1;
     #[inline(always)]
@@ -79,8 +109,8 @@ impl<R: Real, const D: usize> Strain<R, D> for Dilatation<R> {
     }
     #[inline(always)]
     fn displacement_gradient(&self) -> Matrix<R, D> {
-        let j = self.jacobian_minus_one + self.jacobian_minus_one.one();
-        Matrix::scaled_identity(j.power(1.0 / D as f64) - j.one())
+        let e = self.jacobian_minus_one;
+        Matrix::scaled_identity(power_minus_one(e.max(-e.one()), 1.0 / D as f64))
     }
     #[inline(always)]
     fn jacobian_minus_one(&self) -> R {

@@ -167,6 +167,10 @@ impl<R: Real, const D: usize> Mul<Vector<R, D>> for Matrix<R, D> {
 impl<R: Real, const D: usize> Mul for Matrix<R, D> {
     type Output = Self;
     #[inline(always)]
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "unrolls; iterators' adaptors were slower"
+    )]
     fn mul(self, other: Self) -> Self {
         let mut columns = [self * other.0[0]; D];
         for j in 1..D {

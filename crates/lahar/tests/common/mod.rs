@@ -8,23 +8,23 @@ use lahar::{
 };
 
 /// A small generator of even numbers, the same everywhere (splitmix64).
-pub struct Random(pub u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 }
 
 /// One of each model, soft enough that waves and particles are of like speed.
-pub fn one_of_each() -> Vec<Material> {
+pub(crate) fn one_of_each() -> Vec<Material> {
     let (lambda, mu) = lame(2e3, 0.3);
     let material = |name: &str, density, model| Material { name: name.into(), density, model };
     vec![
@@ -48,7 +48,7 @@ pub fn one_of_each() -> Vec<Material> {
 }
 
 /// A ball's worth of jittered particles of material `material`.
-pub fn ball<const D: usize>(
+pub(crate) fn ball<const D: usize>(
     material: usize,
     centre: [f64; D],
     radius: f64,
@@ -82,7 +82,7 @@ pub fn ball<const D: usize>(
 }
 
 /// Balls of all materials thrown at each other in a box of `cells` cells with separating walls.
-pub fn brawl<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatch<D>>) {
+pub(crate) fn brawl<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatch<D>>) {
     let dx = 1.0 / 32.0;
     let size = dx * cells as f64;
     let mut random = Random(7);
@@ -109,7 +109,7 @@ pub fn brawl<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatch<D>>) 
 }
 
 /// Everything a particle has.
-pub const ALL: &[Field] = &[
+pub(crate) const ALL: &[Field] = &[
     Field::Position,
     Field::Velocity,
     Field::Affine,
@@ -123,7 +123,7 @@ pub const ALL: &[Field] = &[
 ];
 
 /// The bits of a snapshot, column after column.
-pub fn bits(snapshot: &Snapshot) -> Vec<u64> {
+pub(crate) fn bits(snapshot: &Snapshot) -> Vec<u64> {
     let mut all = vec![snapshot.time.to_bits()];
     for (_, data) in &snapshot.columns {
         match data {
@@ -136,7 +136,7 @@ pub fn bits(snapshot: &Snapshot) -> Vec<u64> {
 }
 
 /// Runs to `time` on `threads` threads.
-pub fn run_on<T: lahar::math::Lanes, const D: usize>(
+pub(crate) fn run_on<T: lahar::math::Lanes, const D: usize>(
     threads: usize,
     setup: &Setup<D>,
     batches: &[ParticleBatch<D>],

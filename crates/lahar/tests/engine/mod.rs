@@ -1,0 +1,146 @@
+//! The face that a check of the method sees of an engine, so that one check runs on all of them.
+//!
+//! An engine only steps and shows its particles. Whatever is summed over them (energies, momenta)
+//! is summed by the oracle, from what the engine shows.
+
+use lahar::math::{Matrix, Vector};
+use lahar::reference::Reference;
+use lahar::{Deformation, ParticleBatch, Setup, TimeStep};
+
+/// A particle as an engine shows it.
+#[derive(Clone, Debug)]
+pub(crate) struct State<const D: usize> {
+    pub(crate) id: u32,
+    pub(crate) material: usize,
+    pub(crate) body: u32,
+    /// \[kg\]
+    pub(crate) mass: f64,
+    /// \[m³; m² in 2D\]
+    pub(crate) volume0: f64,
+    /// \[m\]
+    pub(crate) position: [f64; D],
+    /// \[m/s\]
+    pub(crate) velocity: [f64; D],
+    /// C \[1/s\], `[i][j]` = ∂v_i/∂x_j.
+    pub(crate) affine: [[f64; D]; D],
+    /// F.
+    pub(crate) deformation_gradient: [[f64; D]; D],
+    /// J − 1.
+    pub(crate) jacobian_minus_one: f64,
+}
+
+/// What steps a scene.
+pub(crate) trait Engine<const D: usize>: Sized {
+    /// The distance from 1 to the next of its numbers.
+    const EPSILON: f64;
+    /// `setup.time_step` is fixed.
+    fn new(setup: &Setup<D>, batches: &[ParticleBatch<D>]) -> Self;
+    /// One substep.
+    fn substep(&mut self);
+    /// All particles, by ascending id.
+    fn particles(&self) -> Vec<State<D>>;
+
+    /// `double` for an engine that computes in `f64`, else `single`.
+    fn tolerance(double: f64, single: f64) -> f64 {
+        if Self::EPSILON < 1e-10 {
+            double
+        } else {
+            single
+        }
+    }
+}
+
+/// [`Reference`] as an engine.
+pub(crate) struct Oracle<const D: usize> {
+    reference: Reference<D>,
+    dt: f64,
+}
+
+impl<const D: usize> Engine<D> for Oracle<D> {
+    const EPSILON: f64 = f64::EPSILON;
+
+    fn new(setup: &Setup<D>, batches: &[ParticleBatch<D>]) -> Self {
+        let reference = Reference::new(setup, batches).expect("the check's scene is sound");
+        Self {
+            reference,
+            dt: fixed_dt(setup),
+        }
+    }
+
+    fn substep(&mut self) {
+        self.reference.substep(self.dt);
+    }
+
+    fn particles(&self) -> Vec<State<D>> {
+        let rows = |m: Matrix<f64, D>| m.transpose().0.map(|row| row.0);
+        let state = |p: &lahar::reference::Particle<D>| State {
+            id: p.id,
+            material: p.material,
+            body: p.body,
+            mass: p.mass,
+            volume0: p.volume0,
+            position: p.position.0,
+            velocity: p.velocity.0,
+            affine: rows(p.affine),
+            deformation_gradient: rows(
+                self.reference.displacement_gradient(p) + Matrix::identity(1.0),
+            ),
+            jacobian_minus_one: self.reference.jacobian_minus_one(p),
+        };
+        self.reference.particles().iter().map(state).collect()
+    }
+}
+
+/// The oracle in the state that an engine shows, for its totals. A model that keeps only J gets F
+/// of that J; a plastic one starts unyielded.
+pub(crate) fn oracle_of<const D: usize>(setup: &Setup<D>, particles: &[State<D>]) -> Reference<D> {
+    let batch = |p: &State<D>| ParticleBatch {
+        material: p.material,
+        body: p.body,
+        position: vec![p.position],
+        velocity: vec![p.velocity],
+        volume: vec![p.volume0],
+        mass: vec![p.mass],
+        affine: vec![p.affine],
+        deformation: Deformation::Gradient(vec![p.deformation_gradient]),
+    };
+    let batches: Vec<_> = particles.iter().map(batch).collect();
+    Reference::new(setup, &batches).expect("the engine's particles are sound")
+}
+
+/// The length of the substeps of a check \[s\].
+pub(crate) fn fixed_dt<const D: usize>(setup: &Setup<D>) -> f64 {
+    match setup.time_step {
+        TimeStep::Fixed(dt) => dt,
+        TimeStep::Automatic { .. } => panic!("the checks of the method fix dt"),
+    }
+}
+
+/// Numbers that look random and are the same everywhere (SplitMix64).
+pub(crate) struct Numbers(pub(crate) u64);
+
+impl Numbers {
+    /// The next one, in −1 .. 1.
+    pub(crate) fn signed(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// `D` of them.
+    pub(crate) fn vector<const D: usize>(&mut self) -> [f64; D] {
+        core::array::from_fn(|_| self.signed())
+    }
+
+    /// `D` rows of `D`, each times `scale`.
+    pub(crate) fn matrix<const D: usize>(&mut self, scale: f64) -> [[f64; D]; D] {
+        core::array::from_fn(|_| self.vector().map(|x| x * scale))
+    }
+}
+
+/// `f` as the vector that formulas use.
+pub(crate) fn times<const D: usize>(matrix: [[f64; D]; D], vector: [f64; D]) -> [f64; D] {
+    matrix.map(|row| Vector(row).dot(Vector(vector)))
+}

@@ -1,0 +1,965 @@
+//! Every constitutive model, by what physics asks of any of them, and by tables.
+//!
+//! [`conforms!`] gives a model all the tests of the first part by one line. What a model is asked
+//! for there: no stress and no energy at rest; τ = (∂Φ/∂F) Fᵀ by finite differences; the same law
+//! seen from any frame and in any direction; the same numbers in f32, and in the lanes of every
+//! instruction set; small strains that do not drown in rounding; and a bound on its wave speed
+//! that is one.
+
+use fearless_simd::{Level, Simd, dispatch};
+use lahar::material::{
+    ConstitutiveModel, Corotated, Dilatation, DisplacementGradient, Dust, Eos, Fluid,
+    HardeningFrom, JacobianUpdate, LOGARITHM_ENDS, Model, NeoHookean, PRESETS, PlasticGradient,
+    SMALLEST_JACOBIAN, Snow, Strain, lame, lame_from_bulk_and_shear, preset,
+};
+use lahar::math::{Lanes, Matrix, Scalar, Vector, svd};
+
+// ---- One line a model ----
+
+/// A module of tests of one model, in 2D and 3D.
+macro_rules! conforms {
+    ($name:ident, $model:expr) => {
+        mod $name {
+            use super::*;
+            conforms!(@tests $model;
+                nothing_at_rest,
+                stress_is_the_gradient_of_energy,
+                frame_indifferent_and_isotropic,
+                single_precision,
+                lanes_of_every_instruction_set,
+                small_strains_survive_single_precision,
+                wave_modulus_is_a_bound,
+                follows_the_motion,
+                storage_keeps_everything,
+            );
+        }
+    };
+    (@tests $model:expr; $($test:ident,)*) => {
+        $(
+            #[test]
+            fn $test() {
+                super::$test::<_, 2>(&$model);
+                super::$test::<_, 3>(&$model);
+            }
+        )*
+    };
+}
+
+conforms!(dust, Dust);
+conforms!(water, Fluid::water_like(1000.0, 10.0));
+conforms!(
+    honey,
+    Fluid {
+        viscosity: 5.0,
+        bulk_viscosity: 2.0,
+        ..Fluid::water_like(1400.0, 10.0)
+    }
+);
+conforms!(
+    tait_1,
+    Fluid {
+        tension: f64::INFINITY,
+        ..Fluid::inviscid(400.0)
+    }
+);
+conforms!(tait_1_without_tension, Fluid::inviscid(400.0));
+conforms!(
+    tait_air,
+    Fluid {
+        eos: Eos::Tait { gamma: 1.4 },
+        tension: 3e4,
+        ..Fluid::inviscid(1e5)
+    }
+);
+conforms!(
+    linear_j,
+    Fluid {
+        eos: Eos::LinearJ,
+        tension: 30.0,
+        jacobian_update: JacobianUpdate::Determinant,
+        ..Fluid::inviscid(277.0)
+    }
+);
+conforms!(corotated, Corotated::new(1e4, 0.3));
+conforms!(corotated_auxetic, Corotated::new(1e4, -0.3));
+conforms!(neo_hookean, NeoHookean::new(1e4, 0.3));
+conforms!(rubber, NeoHookean::new(2e6, 0.49));
+conforms!(snow, Snow::default());
+
+// ---- What is asked of any model ----
+
+fn nothing_at_rest<M: ConstitutiveModel<D>, const D: usize>(model: &M) {
+    fn check<M: ConstitutiveModel<D>, T: Scalar, const D: usize>(model: &M, zero: T) {
+        let rest = M::Strain::<T>::rest(zero);
+        let still = Matrix::scaled_identity(zero);
+        assert_eq!(model.kirchhoff_stress(rest, still), still);
+        assert_eq!(model.energy_density(rest), zero);
+        assert_eq!(rest.jacobian_minus_one(), zero);
+        assert_eq!(rest.displacement_gradient(), still);
+        let moved = model.advance(rest, still);
+        assert_eq!(moved.displacement_gradient(), still);
+        assert_eq!(model.kirchhoff_stress(moved, still), still);
+    }
+    check::<M, f32, D>(model, 0.0);
+    check::<M, f64, D>(model, 0.0);
+}
+
+fn stress_is_the_gradient_of_energy<M: ConstitutiveModel<D>, const D: usize>(model: &M) {
+    let mut random = Random::new();
+    for size in [1e-3, 0.1, 0.4] {
+        for _ in 0..50 {
+            let h = random.regular(size);
+            let error = (stress(model, h) - gradient_stress(model, h)).norm();
+            let scale = modulus(model, h);
+            assert!(error <= 1e-8 * scale, "{error} of {scale} at {h:?}");
+            assert!(energy(model, h) >= 0.0);
+        }
+    }
+}
+
+fn frame_indifferent_and_isotropic<M: ConstitutiveModel<D>, const D: usize>(model: &M) {
+    let mut random = Random::new();
+    for _ in 0..100 {
+        let h: Matrix<f64, D> = random.regular(0.4);
+        let l: Matrix<f64, D> = random.matrix(1.0);
+        let q: Matrix<f64, D> = random.rotation();
+        let shift = q - identity();
+        let seen = |h, l| model.kirchhoff_stress(M::Strain::from_displacement_gradient(h), l);
+        let tau = seen(h, l);
+        let scale = 1e-12 * (modulus(model, h) + tau.norm());
+
+        let turned = seen(q * h + shift, q * l * q.transpose());
+        let error = (turned - q * tau * q.transpose()).norm();
+        assert!(error <= scale, "frame: {error} at {h:?}");
+        let grain = (seen(h * q + shift, l) - tau).norm();
+        assert!(grain <= scale, "isotropy: {grain} at {h:?}");
+        let energies = (energy(model, q * h + shift) - energy(model, h)).abs();
+        assert!(energies <= scale, "energy: {energies} at {h:?}");
+        assert!((tau - tau.transpose()).norm() <= scale, "symmetry at {h:?}");
+    }
+}
+
+fn single_precision<M: ConstitutiveModel<D>, const D: usize>(model: &M) {
+    let mut random = Random::new();
+    for _ in 0..200 {
+        let (h, l) = (single(random.regular(0.4)), single(random.matrix(1.0)));
+        let error = {
+            let exact = model.kirchhoff_stress(M::Strain::from_displacement_gradient(h), l);
+            let ours = model.kirchhoff_stress(
+                M::Strain::from_displacement_gradient(cast::<f32, D>(h)),
+                cast::<f32, D>(l),
+            );
+            (cast_up(ours) - exact).norm()
+        };
+        let scale = modulus(model, h);
+        assert!(error <= 3e-6 * scale, "{error} of {scale} at {h:?}");
+        let ours = model.wave_modulus(M::Strain::from_displacement_gradient(cast::<f32, D>(h)));
+        assert!((f64::from(ours) - scale).abs() <= 3e-5 * scale);
+    }
+}
+
+fn lanes_of_every_instruction_set<M: ConstitutiveModel<D>, const D: usize>(model: &M) {
+    for (name, level) in levels() {
+        // Without fused multiply-adds lanes do what scalars do, to the bit.
+        let fused = if name == "portable" { 0.0 } else { 1.0 };
+        in_lanes_as_in_scalars::<M, f32, D>(model, name, level, 4e-6 * fused);
+        in_lanes_as_in_scalars::<M, f64, D>(model, name, level, 1e-14 * fused);
+    }
+}
+
+fn small_strains_survive_single_precision<M: ConstitutiveModel<D>, const D: usize>(model: &M) {
+    let mut random = Random::new();
+    let worst = (0..200).fold(0.0, |worst: f64, _| {
+        let h = single(random.matrix(1e-6));
+        let exact = stress(model, h);
+        let strain = M::Strain::<f32>::from_displacement_gradient(cast(h));
+        let ours = cast_up(model.kirchhoff_stress(strain, Matrix::scaled_identity(0.0)));
+        if exact.norm() == 0.0 {
+            assert_eq!(ours.norm(), 0.0);
+            return worst;
+        }
+        let stored = energy(model, h);
+        let relative = (f64::from(model.energy_density(strain)) - stored).abs() / stored;
+        assert!(relative <= 1e-4, "energy off by {relative} at {h:?}");
+        worst.max((ours - exact).norm() / exact.norm())
+    });
+    assert!(worst <= 1e-5, "{worst}");
+}
+
+/// For plane waves a e^{ik(n·x − ct)}: ρ₀c² is the largest eigenvalue of
+/// (∂P_iJ/∂F_kL)(Fᵀn)_J (Fᵀn)_L, whatever the direction n.
+fn wave_modulus_is_a_bound<M: ConstitutiveModel<D>, const D: usize>(model: &M) {
+    let zero = Matrix::scaled_identity(0.0);
+    let (rest, exact) = (modulus(model, zero), largest_stiffness(model, zero, 0.0));
+    // A law that does not pull is met from both sides at rest.
+    assert!(
+        exact <= rest * (1.0 + 1e-6) && exact >= rest * 0.49,
+        "{exact} {rest}"
+    );
+
+    let mut random = Random::new();
+    for (size, samples) in [(0.02, 20), (0.3, 60), (0.9, 60)] {
+        let mut loosest: f64 = 0.0;
+        for _ in 0..samples {
+            let h = random.regular(size);
+            let (bound, exact) = (
+                modulus(model, h),
+                largest_stiffness(model, h, random.next()),
+            );
+            assert!(
+                exact <= bound * (1.0 + 1e-6),
+                "{exact} above {bound} at {h:?}"
+            );
+            // Beyond a cut-off there is no stiffness at all to compare with.
+            if exact > 0.01 * rest {
+                loosest = loosest.max(bound / exact);
+            }
+        }
+        assert!(loosest <= if size < 0.1 { 1.3 } else { 4.0 }, "{loosest}");
+    }
+}
+
+fn follows_the_motion<M: ConstitutiveModel<D>, const D: usize>(model: &M) {
+    let mut random = Random::new();
+    let mut strain = M::Strain::<f64>::rest(0.0);
+    let mut f: Matrix<f64, D> = identity();
+    for _ in 0..10 {
+        let increment = random.matrix(1e-4);
+        strain = model.advance(strain, increment);
+        f = (identity() + increment) * f;
+    }
+    let jacobian = f.determinant() - 1.0;
+    // 1 + tr and det differ in the second order.
+    assert!((strain.jacobian_minus_one() - jacobian).abs() <= 1e-6);
+    if M::Strain::<f64>::COLUMNS >= D * D {
+        let error = strain.displacement_gradient() - (f - identity());
+        assert!(error.norm() <= 1e-15, "{error:?}");
+    }
+}
+
+fn storage_keeps_everything<M: ConstitutiveModel<D>, const D: usize>(_: &M) {
+    let columns = M::Strain::<f64>::COLUMNS;
+    let stored: Vec<f64> = (0..columns).map(|i| 0.01 * (i as f64 + 1.0)).collect();
+    let strain = M::Strain::<f64>::read(|column| stored[column]);
+    let mut again = vec![f64::NAN; columns];
+    strain.write(|column, value| again[column] = value);
+    assert_eq!(stored, again);
+    let h = strain.displacement_gradient();
+    let jacobian = h.determinant_of_identity_plus_minus_one();
+    assert!((jacobian - strain.jacobian_minus_one()).abs() < 1e-15);
+}
+
+// ---- The tools of the above ----
+
+/// Numbers that look random, the same in every run.
+struct Random(u64);
+
+impl Random {
+    fn new() -> Self {
+        Self(0x9E37_79B9_7F4A_7C15)
+    }
+    /// In [−1, 1).
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+    fn matrix<const D: usize>(&mut self, size: f64) -> Matrix<f64, D> {
+        Matrix::from_fn(|_, _| size * self.next())
+    }
+    /// A displacement gradient of entries up to `size`, for which J > ⅕, seen from some frame.
+    fn regular<const D: usize>(&mut self, size: f64) -> Matrix<f64, D> {
+        let q = self.rotation();
+        loop {
+            let h = self.matrix(size);
+            if h.determinant_of_identity_plus_minus_one() > -0.8 {
+                return q * h + (q - identity());
+            }
+        }
+    }
+    fn rotation<const D: usize>(&mut self) -> Matrix<f64, D> {
+        svd(self.matrix(1.0)).u
+    }
+    fn direction<const D: usize>(&mut self) -> Vector<f64, D> {
+        let v = Vector::from_fn(|_| self.next());
+        v * (1.0 / v.norm())
+    }
+}
+
+trait Norm {
+    fn norm(self) -> f64;
+}
+impl<const D: usize> Norm for Matrix<f64, D> {
+    fn norm(self) -> f64 {
+        self.squared_norm().sqrt()
+    }
+}
+
+fn identity<const D: usize>() -> Matrix<f64, D> {
+    Matrix::identity(1.0)
+}
+fn cast<T: Scalar, const D: usize>(m: Matrix<f64, D>) -> Matrix<T, D> {
+    Matrix::from_fn(|i, j| T::from_f64(m[(i, j)]))
+}
+fn cast_up<T: Scalar, const D: usize>(m: Matrix<T, D>) -> Matrix<f64, D> {
+    Matrix::from_fn(|i, j| m[(i, j)].to_f64())
+}
+/// Rounded to what f32 can hold.
+fn single<const D: usize>(m: Matrix<f64, D>) -> Matrix<f64, D> {
+    cast_up(cast::<f32, D>(m))
+}
+
+fn stress<M: ConstitutiveModel<D>, const D: usize>(model: &M, h: Matrix<f64, D>) -> Matrix<f64, D> {
+    model.kirchhoff_stress(
+        M::Strain::from_displacement_gradient(h),
+        Matrix::scaled_identity(0.0),
+    )
+}
+fn energy<M: ConstitutiveModel<D>, const D: usize>(model: &M, h: Matrix<f64, D>) -> f64 {
+    model.energy_density(M::Strain::from_displacement_gradient(h))
+}
+fn modulus<M: ConstitutiveModel<D>, const D: usize>(model: &M, h: Matrix<f64, D>) -> f64 {
+    model.wave_modulus(M::Strain::from_displacement_gradient(h))
+}
+
+/// ∂f/∂F_kl by differences of fourth order.
+fn derivative<const D: usize>(
+    h: Matrix<f64, D>,
+    (k, l): (usize, usize),
+    f: impl Fn(Matrix<f64, D>) -> f64,
+) -> f64 {
+    let step = 1e-6;
+    let at = |times: f64| {
+        let mut moved = h;
+        moved[(k, l)] += times * step;
+        f(moved)
+    };
+    (8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * step)
+}
+
+/// (∂Φ/∂F) Fᵀ by differences.
+fn gradient_stress<M: ConstitutiveModel<D>, const D: usize>(
+    model: &M,
+    h: Matrix<f64, D>,
+) -> Matrix<f64, D> {
+    let p = Matrix::from_fn(|i, j| derivative(h, (i, j), |h| energy(model, h)));
+    p * (identity() + h).transpose()
+}
+
+/// F⁻¹, by the cofactors that are the derivatives of the determinant.
+fn inverse<const D: usize>(f: Matrix<f64, D>) -> Matrix<f64, D> {
+    let determinant = f.determinant();
+    Matrix::from_fn(|i, j| {
+        // The determinant is linear in each entry: its derivative by f_ji is exact.
+        let with = |value: f64| {
+            let mut changed = f;
+            changed[(j, i)] = value;
+            changed.determinant()
+        };
+        (with(1.0) - with(0.0)) / determinant
+    })
+}
+
+/// The largest ρ₀c² of plane waves in many directions, the axes and one that `seed` gives included.
+fn largest_stiffness<M: ConstitutiveModel<D>, const D: usize>(
+    model: &M,
+    h: Matrix<f64, D>,
+    seed: f64,
+) -> f64 {
+    let first_piola = |h: Matrix<f64, D>| stress(model, h) * inverse(identity() + h).transpose();
+    let tangent = |k: usize, l: usize| -> Matrix<f64, D> {
+        Matrix::from_fn(|i, j| derivative(h, (k, l), |h| first_piola(h)[(i, j)]))
+    };
+    let tangents: [[Matrix<f64, D>; D]; D] =
+        std::array::from_fn(|k| std::array::from_fn(|l| tangent(k, l)));
+    let f = identity() + h;
+
+    let mut random = Random::new();
+    random.0 ^= seed.to_bits();
+    let principal = svd(f).u;
+    let directions = principal
+        .0
+        .into_iter()
+        .chain((0..30).map(|_| random.direction()));
+    let stiffness = directions.map(|n| {
+        let m = f.transpose() * n;
+        let mut acoustic = Matrix::<f64, D>::scaled_identity(0.0);
+        for (k, row) in tangents.iter().enumerate() {
+            for (l, tangent) in row.iter().enumerate() {
+                let column = *tangent * m * m[l];
+                for i in 0..D {
+                    acoustic[(i, k)] += column[i];
+                }
+            }
+        }
+        // Symmetric: its singular values, with the sign of the eigenvalue.
+        let parts = svd((acoustic + acoustic.transpose()) * 0.5);
+        (0..D)
+            .map(|i| parts.sigma[i] * parts.u.0[i].dot(parts.v.0[i]).signum())
+            .fold(0.0, f64::max)
+    });
+    stiffness.fold(0.0, f64::max)
+}
+
+/// The instruction sets that this machine has.
+fn levels() -> Vec<(&'static str, Level)> {
+    let mut levels = vec![("portable", Level::baseline())];
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        let best = Level::new();
+        levels.extend(best.as_avx2().map(|token| ("avx2", Level::Avx2(token))));
+        levels.extend(
+            best.as_avx512()
+                .map(|token| ("avx512", Level::Avx512(token))),
+        );
+    }
+    #[cfg(target_arch = "aarch64")]
+    levels.extend(
+        Level::new()
+            .as_neon()
+            .map(|token| ("neon", Level::Neon(token))),
+    );
+    levels
+}
+
+/// What a model makes of one register of particles, by columns.
+#[derive(Default)]
+struct Results<T> {
+    /// τ, by columns of the matrix, then Φ and the wave modulus.
+    stress: Vec<Vec<T>>,
+    /// The strain after a substep.
+    strain: Vec<Vec<T>>,
+}
+
+#[inline(always)]
+fn evaluate<S: Simd, M: ConstitutiveModel<D>, T: Lanes, const D: usize>(
+    simd: S,
+    model: &M,
+    columns: &[Vec<T>],
+) -> Results<T> {
+    let load = |column: usize| T::load(simd, &columns[column]);
+    let store = |value: T::Of<S>| {
+        let mut stored = vec![T::default(); T::WIDTH];
+        T::store(value, &mut stored);
+        stored
+    };
+    let count = M::Strain::<T::Of<S>>::COLUMNS;
+    let strain = M::Strain::<T::Of<S>>::read(load);
+    let gradient = Matrix::from_fn(|i, j| load(count + j * D + i));
+    let mut results = Results::default();
+
+    let tau = model.kirchhoff_stress(strain, gradient);
+    let entries = (0..D * D).map(|k| tau[(k % D, k / D)]);
+    let scalars = [model.energy_density(strain), model.wave_modulus(strain)];
+    results.stress.extend(entries.chain(scalars).map(store));
+    results.strain.resize(count, Vec::new());
+    model
+        .advance(strain, gradient)
+        .write(|column, value| results.strain[column] = store(value));
+    results
+}
+
+fn in_lanes_as_in_scalars<M: ConstitutiveModel<D>, T: Lanes, const D: usize>(
+    model: &M,
+    name: &str,
+    level: Level,
+    tolerance: f64,
+) {
+    let mut random = Random::new();
+    let count = M::Strain::<T>::COLUMNS;
+    for size in [1e-3, 0.05, 0.3] {
+        let particles: Vec<Vec<T>> = (0..T::WIDTH)
+            .map(|_| {
+                let h = cast::<T, D>(random.regular(size));
+                let l = cast::<T, D>(random.matrix(size));
+                let mut row = vec![T::default(); count];
+                M::Strain::<T>::from_displacement_gradient(h)
+                    .write(|column, value| row[column] = value);
+                row.extend(l.0.into_iter().flat_map(|column| column.0));
+                row
+            })
+            .collect();
+        let columns: Vec<Vec<T>> = (0..count + D * D)
+            .map(|column| particles.iter().map(|row| row[column]).collect())
+            .collect();
+        let ours = dispatch!(level, simd => evaluate::<_, M, T, D>(simd, model, &columns));
+
+        for (lane, row) in particles.iter().enumerate() {
+            let strain = M::Strain::<T>::read(|column| row[column]);
+            let gradient = Matrix::from_fn(|i, j| row[count + j * D + i]);
+            let modulus = model.wave_modulus(strain);
+            let tau = model.kirchhoff_stress(strain, gradient);
+            let close = |what: &str, ours: T, exact: T, scale: f64| {
+                let error = (ours.to_f64() - exact.to_f64()).abs();
+                let allowed = tolerance * scale;
+                assert!(
+                    error <= allowed,
+                    "{name} {} {what}: {ours:?} for {exact:?}",
+                    T::NAME
+                );
+            };
+            for k in 0..D * D {
+                close(
+                    "stress",
+                    ours.stress[k][lane],
+                    tau[(k % D, k / D)],
+                    modulus.to_f64(),
+                );
+            }
+            let energy = model.energy_density(strain);
+            close("energy", ours.stress[D * D][lane], energy, modulus.to_f64());
+            close(
+                "modulus",
+                ours.stress[D * D + 1][lane],
+                modulus,
+                modulus.to_f64(),
+            );
+            model.advance(strain, gradient).write(|column, value| {
+                close("strain", ours.strain[column][lane], value, 2.0);
+            });
+        }
+    }
+}
+
+// ---- Tables ----
+
+/// A table of numbers under `#` lines and a line of names.
+struct Table {
+    names: Vec<String>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Table {
+    fn parse(text: &str) -> Self {
+        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+        let names = lines
+            .next()
+            .unwrap()
+            .split(',')
+            .map(str::to_owned)
+            .collect();
+        let row = |line: &str| line.split(',').map(|x| x.parse().unwrap()).collect();
+        Self {
+            names,
+            rows: lines.map(row).collect(),
+        }
+    }
+    fn get(&self, row: &[f64], name: &str) -> f64 {
+        row[self.names.iter().position(|n| n == name).unwrap()]
+    }
+    /// The symmetric matrix of columns NAME11, NAME12, ...
+    fn symmetric<const D: usize>(&self, row: &[f64], name: &str) -> Matrix<f64, D> {
+        Matrix::from_fn(|i, j| {
+            let (i, j) = (i.min(j) + 1, i.max(j) + 1);
+            self.get(row, &format!("{name}{i}{j}"))
+        })
+    }
+}
+
+/// E = 10⁴ Pa, ν = 0.3, to the ten digits of the tables.
+fn matches_table<const D: usize>(text: &str) {
+    let table = Table::parse(text);
+    let close = |what: &str, ours: Matrix<f64, D>, exact: Matrix<f64, D>| {
+        let error = (ours - exact).norm() / exact.norm();
+        assert!(error <= 1e-8, "{what}: {ours:?} for {exact:?}");
+    };
+    for row in &table.rows {
+        let f: Matrix<f64, D> =
+            Matrix::from_fn(|i, j| table.get(row, &format!("F{}{}", i + 1, j + 1)));
+        let h = f - identity();
+        let zero = Matrix::scaled_identity(0.0);
+
+        let corotated = stress(&Corotated::new(1e4, 0.3), h);
+        close("corotated", corotated, table.symmetric(row, "fcr_tau"));
+        let neo_hookean = stress(&NeoHookean::new(1e4, 0.3), h);
+        close("neo-Hookean", neo_hookean, table.symmetric(row, "nh_tau"));
+
+        let snow = Snow::new(1e4, 0.3);
+        let yielded = snow.advance(PlasticGradient::from_displacement_gradient(h), zero);
+        let tau = snow.kirchhoff_stress(yielded, zero);
+        close("snow", tau, table.symmetric(row, "snow_tau"));
+        let sigma = svd(identity() + yielded.h).sigma;
+        let named = |name: &str| table.get(row, &format!("snow_{name}"));
+        let exact = Vector::<f64, D>::from_fn(|i| named(&format!("sig{}", i + 1)));
+        close(
+            "snow's σ",
+            Matrix::from_diagonal(sigma),
+            Matrix::from_diagonal(exact),
+        );
+        let scalars = [
+            (1.0 + yielded.plastic_jacobian_minus_one, named("Jp")),
+            (snow.hardening(yielded), named("h")),
+        ];
+        for (ours, exact) in scalars {
+            assert!((ours - exact).abs() <= 1e-8 * exact, "{ours} for {exact}");
+        }
+    }
+}
+
+#[test]
+fn solids_match_the_tables() {
+    matches_table::<2>(include_str!("data/constitutive_reference_2d.csv"));
+    matches_table::<3>(include_str!("data/constitutive_reference_3d.csv"));
+}
+
+#[test]
+fn equations_of_state_match_the_table() {
+    let table = Table::parse(include_str!("data/eos_reference.csv"));
+    let law = |eos| Fluid {
+        eos,
+        tension: f64::INFINITY,
+        ..Fluid::inviscid(1.0)
+    };
+    for row in &table.rows {
+        let ratio = table.get(row, "r");
+        let e = 1.0 / ratio - 1.0;
+        let columns = [
+            ("linear", Eos::Tait { gamma: 1.0 }),
+            ("linearJ", Eos::LinearJ),
+            ("tait7", Eos::Tait { gamma: 7.0 }),
+        ];
+        for (name, eos) in columns {
+            let error = (law(eos).pressure(e) - table.get(row, name)).abs();
+            assert!(error <= 1e-10, "{name} at {ratio}: {error}");
+        }
+    }
+}
+
+/// HydraxMPM's tests/test_newtonfluid_mat.py: p = B((m/V)⁷ − 1), B = 2 MPa, m/V = 1400/1390, viscosity
+/// 1 mPa s, velocity gradient I.
+#[test]
+fn newtonian_fluid_agrees_with_hydrax_mpm() {
+    let law = Fluid {
+        eos: Eos::Tait { gamma: 7.0 },
+        viscosity: 1e-3,
+        ..Fluid::inviscid(7.0 * 2e6)
+    };
+    let jacobian: f64 = 1390.0 / 1400.0;
+    let strain = Dilatation {
+        jacobian_minus_one: jacobian - 1.0,
+    };
+    let tau: Matrix<f64, 3> = law.kirchhoff_stress(strain, identity());
+    let cauchy = tau * (1.0 / jacobian);
+    let error = cauchy - identity() * -102_920.05;
+    assert!(error.norm() <= 1e-5 * cauchy.norm(), "{cauchy:?}");
+}
+
+// ---- Fluid ----
+
+#[test]
+fn pressure_near_rest_keeps_its_digits_in_single_precision() {
+    for eos in [1.0, 1.4, 4.0, 7.0]
+        .map(|gamma| Eos::Tait { gamma })
+        .into_iter()
+        .chain([Eos::LinearJ])
+    {
+        let law = Fluid {
+            eos,
+            tension: f64::INFINITY,
+            ..Fluid::inviscid(1e5)
+        };
+        for e in [1e-5f32, -1e-5, 3.3e-6, -2.1e-7, 1e-9, -1e-12, 4e-3] {
+            let exact = law.pressure(f64::from(e));
+            let error = (f64::from(law.pressure(e)) - exact) / exact;
+            assert!(error.abs() <= 3e-7, "{eos:?} at {e}: {error}");
+        }
+    }
+}
+
+#[test]
+fn mpm88_and_mpm99_liquids_are_exact() {
+    let zero = Matrix::<f64, 2>::scaled_identity(0.0);
+    let whole = |eos| Fluid {
+        eos,
+        tension: f64::INFINITY,
+        ..Fluid::inviscid(400.0)
+    };
+    for e in [-0.3, 0.01, 0.7] {
+        let strain = Dilatation {
+            jacobian_minus_one: e,
+        };
+        let mpm88 = whole(Eos::Tait { gamma: 1.0 }).kirchhoff_stress(strain, zero);
+        assert_eq!(mpm88[(0, 0)], 400.0 * e);
+        let mpm99 = whole(Eos::LinearJ).kirchhoff_stress(strain, zero);
+        assert!((mpm99[(1, 1)] - 400.0 * (1.0 + e) * e).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_fluid_pulls_no_harder_than_its_tension() {
+    for eos in [1.0, 1.4, 7.0]
+        .map(|gamma| Eos::Tait { gamma })
+        .into_iter()
+        .chain([Eos::LinearJ])
+    {
+        for tension in [0.0, 3.0, 50.0, f64::INFINITY] {
+            let law = Fluid {
+                eos,
+                tension,
+                ..Fluid::inviscid(100.0)
+            };
+            let mut last = 0.0;
+            for step in 0..4000 {
+                let e = 1e-3 * f64::from(step);
+                assert!(law.pressure(e) >= -tension);
+                // The energy grows by the work of the pull.
+                let stored = energy(&law, Matrix::<f64, 2>::from_diagonal(Vector([e, 0.0])));
+                let rise = stored - last;
+                assert!(
+                    (0.0..=1e-3 * tension.min(400.0) + 1e-12).contains(&rise),
+                    "{rise}"
+                );
+                last = stored;
+            }
+        }
+    }
+}
+
+#[test]
+fn the_equation_of_state_is_inverted() {
+    for eos in [1.0, 1.4, 7.0]
+        .map(|gamma| Eos::Tait { gamma })
+        .into_iter()
+        .chain([Eos::LinearJ])
+    {
+        let law = Fluid {
+            eos,
+            tension: f64::INFINITY,
+            ..Fluid::inviscid(100.0)
+        };
+        for p in [0.0, 1e-6, 3.0, 60.0, -5.0] {
+            let again = law.pressure(law.jacobian_minus_one_at(p));
+            assert!(
+                (again - p).abs() <= 1e-14 * p.abs(),
+                "{eos:?}: {again} for {p}"
+            );
+        }
+    }
+    let law = Fluid::water_like(1000.0, 10.0);
+    assert_eq!(law.jacobian_minus_one_at(-1e6), f64::INFINITY);
+}
+
+#[test]
+fn viscous_stress_is_newtons() {
+    let law = Fluid {
+        viscosity: 0.3,
+        bulk_viscosity: 0.7,
+        ..Fluid::inviscid(1.0)
+    };
+    let rest = Dilatation {
+        jacobian_minus_one: 0.0,
+    };
+    // Simple shear of 2/s.
+    let shear = Matrix::<f64, 3>::from_fn(|i, j| if (i, j) == (0, 1) { 2.0 } else { 0.0 });
+    let tau = law.kirchhoff_stress(rest, shear);
+    assert_eq!((tau[(0, 1)], tau[(1, 0)]), (0.6, 0.6));
+    assert_eq!(tau.trace(), 0.0);
+    // Expansion: the bulk viscosity alone; no stress from a rotation.
+    let tau = law.kirchhoff_stress(rest, Matrix::<f64, 3>::identity(1.0));
+    assert!((tau - identity() * (3.0 * 0.7)).norm() < 1e-15);
+    let spin = shear - shear.transpose();
+    assert_eq!(law.kirchhoff_stress(rest, spin).norm(), 0.0);
+    // A longitudinal wave: κ + 2μ(1 − 1/d).
+    assert!((ConstitutiveModel::<3>::viscosity(&law) - (0.7 + 0.4)).abs() < 1e-15);
+    assert!((ConstitutiveModel::<2>::viscosity(&law) - (0.7 + 0.3)).abs() < 1e-15);
+}
+
+#[test]
+fn a_fluid_turned_inside_out_stays_finite_and_comes_back() {
+    for update in [JacobianUpdate::Trace, JacobianUpdate::Determinant] {
+        let law = Fluid {
+            jacobian_update: update,
+            ..Fluid::water_like(1000.0, 10.0)
+        };
+        let crushed = law.advance(
+            Dilatation {
+                jacobian_minus_one: 0.0f32,
+            },
+            Matrix::<f32, 3>::scaled_identity(-3.0),
+        );
+        assert_eq!(crushed.jacobian_minus_one, (SMALLEST_JACOBIAN - 1.0) as f32);
+        let zero = Matrix::<f32, 3>::scaled_identity(0.0);
+        for strain in [
+            crushed,
+            Dilatation {
+                jacobian_minus_one: -7.0,
+            },
+        ] {
+            let tau = law.kirchhoff_stress(strain, zero);
+            assert!(tau[(0, 0)].is_finite() && tau[(0, 0)] < 0.0);
+            assert!(ConstitutiveModel::<3>::wave_modulus(&law, strain).is_finite());
+            assert!(ConstitutiveModel::<3>::energy_density(&law, strain).is_finite());
+        }
+        let back = law.advance(crushed, Matrix::<f32, 3>::scaled_identity(1.0));
+        assert!(back.jacobian_minus_one > crushed.jacobian_minus_one);
+    }
+}
+
+// ---- Solids ----
+
+/// Neo-Hookean and corotated laws are gradients of their energies at J ≤ 0 too, and bounded there.
+#[test]
+fn solids_turned_inside_out_have_an_energy() {
+    fn check<M: ConstitutiveModel<D>, const D: usize>(model: &M) {
+        let mut random = Random::new();
+        let mut met = 0;
+        while met < 40 {
+            let h: Matrix<f64, D> = random.matrix(1.6);
+            let f = identity() + h;
+            let (j, sigma) = (f.determinant(), svd(f).sigma);
+            // Not where the nearest rotation, or the law, changes over.
+            let kink = (j - LOGARITHM_ENDS).abs() < 1e-3;
+            if !(-1.0..LOGARITHM_ENDS).contains(&j) || kink || sigma[D - 2] + sigma[D - 1] < 0.1 {
+                continue;
+            }
+            met += 1;
+            let error = (stress(model, h) - gradient_stress(model, h)).norm();
+            assert!(error <= 1e-7 * modulus(model, h), "{error} at {h:?}");
+            let (bound, exact) = (modulus(model, h), largest_stiffness(model, h, 0.0));
+            assert!(
+                exact <= bound * (1.0 + 1e-6),
+                "{exact} above {bound} at {h:?}"
+            );
+        }
+    }
+    check::<_, 2>(&NeoHookean::new(1e4, 0.3));
+    check::<_, 3>(&NeoHookean::new(1e4, 0.3));
+    check::<_, 2>(&Corotated::new(1e4, 0.3));
+    check::<_, 3>(&Corotated::new(1e4, 0.3));
+}
+
+/// The flat, F = diag(1, 0) or 0, has finite stress.
+#[test]
+fn solids_pressed_flat_stay_finite() {
+    fn check<M: ConstitutiveModel<3>>(model: &M) {
+        for flat in [0.0f32, -1.0] {
+            let h = Matrix::from_diagonal(Vector([flat, -1.0, -1.0]));
+            let strain = M::Strain::from_displacement_gradient(h);
+            let tau = model.kirchhoff_stress(strain, Matrix::scaled_identity(0.0));
+            assert!(tau.squared_norm().is_finite(), "{tau:?}");
+            assert!(model.wave_modulus(strain).is_finite());
+            assert!(model.energy_density(strain).is_finite());
+        }
+    }
+    check(&Corotated::new(1e4, 0.3));
+    check(&NeoHookean::new(1e4, 0.3));
+    check(&Snow::default());
+}
+
+// ---- Snow ----
+
+/// mpm99's order of work, written for axis-parallel stretches: F moves, h is taken, F yields, J_P
+/// moves, stress. Against it: `Previous`; and `Updated`, which takes h last.
+#[test]
+fn snow_follows_mpm99_in_either_order() {
+    for hardening_from in [HardeningFrom::Previous, HardeningFrom::Updated] {
+        let law = Snow {
+            critical_stretch: 4.5e-3,
+            hardening_from,
+            ..Snow::new(1000.0, 0.2)
+        };
+        let (lambda, mu) = lame(1000.0, 0.2);
+        let mut random = Random::new();
+        let mut strain = PlasticGradient::<f64, 2>::rest(0.0);
+        let (mut sigma, mut plastic): ([f64; 2], f64) = ([1.0; 2], 1.0);
+        for _ in 0..500 {
+            let step = Vector::<f64, 2>::from_fn(|_| 8e-3 * random.next());
+            strain = law.advance(strain, Matrix::from_diagonal(step));
+
+            let before = (10.0 * (1.0 - plastic)).exp();
+            for i in 0..2 {
+                let new = (1.0 + step[i]) * sigma[i];
+                sigma[i] = new.clamp(1.0 - 2.5e-2, 1.0 + 4.5e-3);
+                plastic *= new / sigma[i];
+            }
+            let after = (10.0 * (1.0 - plastic)).exp();
+            let h = if hardening_from == HardeningFrom::Previous {
+                before
+            } else {
+                after
+            };
+            let j = sigma[0] * sigma[1];
+            let exact = Matrix::from_diagonal(Vector::<f64, 2>::from_fn(|i| {
+                h * (2.0 * mu * (sigma[i] - 1.0) * sigma[i] + lambda * j * (j - 1.0))
+            }));
+
+            let tau = law.kirchhoff_stress(strain, Matrix::scaled_identity(0.0));
+            assert!((tau - exact).norm() <= 1e-9 * h, "{tau:?} for {exact:?}");
+            assert!((1.0 + strain.plastic_jacobian_minus_one - plastic).abs() < 1e-12);
+        }
+        assert!(
+            (plastic - 1.0).abs() > 0.02,
+            "it should have yielded: {plastic}"
+        );
+    }
+}
+
+#[test]
+fn snow_on_the_edge_of_yielding_does_not_creep() {
+    let law = Snow::default();
+    let mut random = Random::new();
+    for _ in 0..20 {
+        let h = cast::<f32, 3>(random.regular(0.1));
+        let still = Matrix::scaled_identity(0.0);
+        let yielded = law.advance(PlasticGradient::from_displacement_gradient(h), still);
+        let mut strain = yielded;
+        for _ in 0..10_000 {
+            strain = law.advance(strain, still);
+        }
+        assert_eq!(strain.h, yielded.h);
+        assert_eq!(
+            strain.plastic_jacobian_minus_one,
+            yielded.plastic_jacobian_minus_one
+        );
+    }
+}
+
+#[test]
+fn snow_keeps_to_its_ranges() {
+    let law = Snow {
+        hardening_range: [0.1, 5.0],
+        ..Snow::default()
+    };
+    let still = Matrix::<f64, 2>::scaled_identity(0.0);
+    for (stretch, plastic, hardening) in [(0.3f64, 0.6, 5.0), (9.0, 20.0, 0.1), (-2.0, 0.6, 5.0)] {
+        let h = Matrix::from_diagonal(Vector([stretch - 1.0, 2.0 * stretch.abs() - 1.0]));
+        let strain = law.advance(PlasticGradient::from_displacement_gradient(h), still);
+        let ours = 1.0 + strain.plastic_jacobian_minus_one;
+        assert!((ours - plastic).abs() < 1e-12, "{stretch}: {ours}");
+        assert_eq!(law.hardening(strain), hardening);
+        // The bound knows of the hardening.
+        let rest =
+            ConstitutiveModel::<2>::wave_modulus(&law, PlasticGradient { h: still, ..strain });
+        assert!((rest - hardening * (law.lambda + 2.0 * law.mu)).abs() <= 1e-9 * rest);
+    }
+}
+
+// ---- Names ----
+
+#[test]
+fn presets_exist_and_have_the_asked_speed_of_sound() {
+    for (name, sentence) in PRESETS {
+        let material = preset(name, 12.0).unwrap();
+        assert_eq!(material.name, *name);
+        assert!(sentence.ends_with('.') && Model::NAMES.contains(&material.model.name()));
+        match material.model {
+            Model::Fluid(_) => assert!((material.sound_speed() - 12.0).abs() < 1e-12),
+            _ => assert!(material.sound_speed() > 1.0),
+        }
+    }
+    assert_eq!(preset("treacle", 12.0), None);
+}
+
+#[test]
+fn moduli_convert() {
+    let (lambda, mu) = lame(1e4, 0.3);
+    let (again, shear) = lame_from_bulk_and_shear(lambda + mu * 2.0 / 3.0, mu);
+    assert!((again - lambda).abs() < 1e-9 && shear == mu);
+    assert!((mu - 1e4 / 2.6).abs() < 1e-9 && (lambda - 3e3 / (1.3 * 0.4)).abs() < 1e-9);
+    let strain = DisplacementGradient {
+        h: Matrix::<f64, 2>::scaled_identity(0.0),
+    };
+    let modulus = Corotated { lambda, mu }.wave_modulus(strain);
+    assert_eq!(modulus, lambda + 2.0 * mu);
+}
