@@ -35,49 +35,8 @@ pub(crate) fn check(sources: &Sources, root: &mut Table) -> Result<usize, SceneE
     Ok(dimension)
 }
 
-/// The keys that `root` gives, as (section, key), before defaults are filled in.
-pub(crate) fn used_keys(root: &Table) -> Vec<(&'static str, String)> {
-    fn visit(table: &Table, section: &'static Section, used: &mut Vec<(&'static str, String)>) {
-        for entry in &table.entries {
-            used.push((section.name, entry.key.clone()));
-            if let Some(key) = section.key(&entry.key) {
-                visit_kind(&entry.node, key.kind, used);
-            }
-        }
-    }
-    fn visit_kind(node: &Node, kind: Kind, used: &mut Vec<(&'static str, String)>) {
-        match (kind, &node.value) {
-            (Kind::Table(section), Value::Table(table)) => visit(table, section, used),
-            (Kind::Tables(section), Value::List(list)) => {
-                for node in list {
-                    visit_kind(node, Kind::Table(section), used);
-                }
-            }
-            (Kind::Materials, Value::Table(table)) => {
-                for entry in &table.entries {
-                    let Value::Table(material) = &entry.node.value else {
-                        continue;
-                    };
-                    if let Some(section) = model_of(material).and_then(model_section) {
-                        visit(material, section, used);
-                    }
-                }
-            }
-            (Kind::OneOf(kinds), _) => {
-                if let Some(kind) = kinds.iter().find(|kind| accepts(**kind, &node.value)) {
-                    visit_kind(node, *kind, used);
-                }
-            }
-            _ => {}
-        }
-    }
-    let mut used = Vec::new();
-    visit(root, &SCENE, &mut used);
-    used
-}
-
 /// The model that a material names, itself or by its preset.
-fn model_of(material: &Table) -> Option<&str> {
+pub(crate) fn model_of(material: &Table) -> Option<&str> {
     let text = |key: &str| match &material.get(key)?.value {
         Value::Text(text) => Some(text.as_str()),
         _ => None,
@@ -186,15 +145,11 @@ impl Check<'_> {
                 !matches!(key.kind, Kind::Later) && !(key.only_3d && self.dimension == 2)
             })
         };
+        if let Some(places) = places(&entry.key, section) {
+            return Err(error.hint(format!("\"{}\" belongs {places}", entry.key)));
+        }
         if let Some(near) = nearest(&entry.key, available().map(|key| key.name)) {
             return Err(error.hint(format!("did you mean \"{near}\"?")));
-        }
-        if let Some(other) = SECTIONS.iter().find(|other| {
-            other
-                .key(&entry.key)
-                .is_some_and(|key| !matches!(key.kind, Kind::Later))
-        }) {
-            return Err(error.hint(format!("\"{}\" belongs {}", entry.key, place(other))));
         }
         let names: Vec<&str> = available().map(|key| key.name).collect();
         Err(error.hint(format!("known here: {}", names.join(", "))))
@@ -417,7 +372,10 @@ impl Check<'_> {
         }
         let error = self.sources.error(
             span,
-            format!("\"{}\" is not a {name}", super::document::shorten(text)),
+            format!(
+                "\"{}\" is no value of \"{name}\"",
+                super::document::shorten(text)
+            ),
         );
         Err(match nearest(text, words.iter().copied()) {
             Some(near) => error.hint(format!("did you mean \"{near}\"?")),
@@ -526,7 +484,7 @@ fn replaced_moduli(material: &Table, base: &Table) -> Vec<&'static str> {
 }
 
 /// Whether a value has the TOML type of a kind.
-fn accepts(kind: Kind, value: &Value) -> bool {
+pub(crate) fn accepts(kind: Kind, value: &Value) -> bool {
     match kind {
         Kind::Text | Kind::Color | Kind::Word(_) => matches!(value, Value::Text(_)),
         Kind::Number(_) => matches!(value, Value::Number(_) | Value::Integer(_)),
@@ -544,12 +502,32 @@ fn unit(key: &Key) -> String {
     }
 }
 
-fn place(section: &Section) -> String {
-    if section.name == SCENE.name {
-        section.header.to_owned()
-    } else {
-        format!("in {}", section.header)
+/// Where a key is known that is not known in `here`.
+fn places(name: &str, here: &Section) -> Option<String> {
+    let knows = |section: &&&Section| {
+        section
+            .key(name)
+            .is_some_and(|key| !matches!(key.kind, Kind::Later))
+    };
+    // Of a material, other models tell more than tables of other things.
+    let kin = |section: &&&Section| {
+        section.name.starts_with("material: ") && here.name.starts_with("material: ")
+    };
+    let models: Vec<&str> = SECTIONS
+        .iter()
+        .filter(kin)
+        .filter(knows)
+        .filter_map(|section| section.name.strip_prefix("material: "))
+        .collect();
+    if !models.is_empty() {
+        return Some(format!("to model {}", models.join(", ")));
     }
+    let other = SECTIONS.iter().find(knows)?;
+    Some(if other.name == SCENE.name {
+        other.header.to_owned()
+    } else {
+        format!("in {}", other.header)
+    })
 }
 
 /// The colour "#rrggbb".

@@ -386,13 +386,21 @@ fn syntax(sources: &Sources, source: usize, offset: usize, error: &toml::de::Err
         start: range.start + offset,
         end: range.end + offset,
     };
-    sources.error(
-        span,
-        format!(
-            "not TOML: {}",
-            error.message().lines().collect::<Vec<_>>().join("; ")
-        ),
-    )
+    let message = error.message().lines().collect::<Vec<_>>().join("; ");
+    // Where a line ends after "=", the parser speaks of quotes.
+    let error = sources.error(span, "");
+    let before = error.text.chars().take(error.column.saturating_sub(1));
+    let rest = error.text.chars().skip(error.column.saturating_sub(1));
+    let is_cut = before.collect::<String>().trim_end().ends_with('=')
+        && rest.collect::<String>().trim().is_empty();
+    SceneError {
+        message: if is_cut {
+            "there is no value after \"=\"".to_owned()
+        } else {
+            format!("not TOML: {message}")
+        },
+        ..error
+    }
 }
 
 fn convert(node: &toml::Spanned<DeValue<'_>>, source: usize, offset: usize) -> Node {

@@ -187,7 +187,7 @@ const fn key(
 }
 
 const fn later(name: &'static str) -> Key {
-    key(name, Kind::Later, "", WhenAbsent::Words(""), "")
+    key(name, Kind::Later, "", Words(""), "")
 }
 
 const fn only_3d(mut key: Key) -> Key {
@@ -522,7 +522,7 @@ pub(crate) static CONTACT: Section = Section {
 };
 
 /// Keys of every material.
-const MATERIAL: &[Key] = &[
+static MATERIAL: &[Key] = &[
     key(
         "model",
         Kind::Word(MODELS),
@@ -574,7 +574,7 @@ pub(crate) const MODULI: [[&str; 2]; 3] = [
     ["lame_lambda", "lame_mu"],
 ];
 
-const ELASTIC: &[Key] = &[
+static ELASTIC: &[Key] = &[
     key(
         "youngs_modulus",
         Kind::Number(Bound::Positive),

@@ -25,8 +25,12 @@ mod keys;
 mod plan;
 mod preset;
 mod read;
+mod reference;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use document::shorten;
+pub use reference::{docs, docs_of, schema};
 
 use crate::builtin;
 use crate::error::{SceneError, nearest};
@@ -34,7 +38,7 @@ use document::{Document, Span, json_table};
 use lahar::{Isa, Simulate, Simulation, TimeStep};
 use plan::Plan;
 use read::Reader;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Bounds on what a scene may ask for; a matter of the machine, not of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -210,9 +214,7 @@ impl Scene {
         limits: &Limits,
     ) -> Result<Self, SceneError> {
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
-        read_scene(text, name, overrides, limits, &|path| {
-            std::fs::read(folder.join(path)).map_err(|error| io_words(&error))
-        })
+        read_scene(text, name, overrides, limits, &Files::Folder(folder))
     }
 
     /// Reads a built-in scene by its name, or a file.
@@ -233,14 +235,8 @@ impl Scene {
         limits: &Limits,
     ) -> Result<Self, SceneError> {
         if let Some(scene) = builtin::find(what) {
-            return read_scene(scene.text, scene.name, overrides, limits, &|path| {
-                scene
-                    .files
-                    .iter()
-                    .find(|(name, _)| *name == path)
-                    .map(|(_, text)| text.as_bytes().to_vec())
-                    .ok_or_else(|| "built-in scenes have no such file".to_owned())
-            });
+            let files = Files::Embedded(scene.files);
+            return read_scene(scene.text, scene.name, overrides, limits, &files);
         }
         Self::parse_within(&read_text(what)?, what, overrides, limits)
     }
@@ -358,6 +354,15 @@ impl Scene {
         value
     }
 
+    /// A material as the simulator has it.
+    #[cfg(test)]
+    fn material(&self, index: usize) -> &lahar::Material {
+        match &self.plan {
+            AnyPlan::D2(plan) => &plan.materials[index],
+            AnyPlan::D3(plan) => &plan.materials[index],
+        }
+    }
+
     /// Frames of a run, the first one at time 0 not counted.
     pub fn frames(&self) -> u64 {
         (self.duration * self.frame_rate).round().max(1.0) as u64
@@ -458,17 +463,17 @@ fn read_scene(
     name: &str,
     overrides: &[(String, String)],
     limits: &Limits,
-    file: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    files: &Files<'_>,
 ) -> Result<Scene, SceneError> {
     let mut document = Document::parse(text, name, overrides)?;
     let Document { sources, root } = &mut document;
     let dimension = check::check(sources, root)?;
     let reader = Reader::new(sources, root, Span::default());
     if dimension == 2 {
-        let plan = Plan::<2>::read(&reader, limits, file)?;
+        let plan = Plan::<2>::read(&reader, limits, files)?;
         scene(&document, plan, AnyPlan::D2, (text, name, overrides))
     } else {
-        let plan = Plan::<3>::read(&reader, limits, file)?;
+        let plan = Plan::<3>::read(&reader, limits, files)?;
         scene(&document, plan, AnyPlan::D3, (text, name, overrides))
     }
 }
@@ -493,7 +498,7 @@ fn scene<const D: usize>(
             name: material.name.clone(),
             model: model.unwrap_or_default().to_owned(),
             density: material.density,
-            wave_speed: plan::wave_speed::<D>(material),
+            wave_speed: material.sound_speed(),
             color,
         })
         .collect();
@@ -648,12 +653,53 @@ fn read_text(path: &str) -> Result<String, SceneError> {
     }
     let bytes = std::fs::read(path).map_err(|error| fail(&io_words(&error)))?;
     String::from_utf8(bytes).map_err(|error| {
-        fail(&format!(
-            "this is no scene: byte {} is no UTF-8 text",
-            error.utf8_error().valid_up_to()
-        ))
-        .hint("a scene is a TOML text file")
+        let at = error.utf8_error().valid_up_to();
+        not_text(path, error.as_bytes(), at).hint("a scene is a TOML text file")
     })
+}
+
+/// An error at the first byte that is no text, number `at`.
+pub(crate) fn not_text(path: &str, bytes: &[u8], at: usize) -> SceneError {
+    /// Bytes shown after it.
+    const AFTER: usize = 100;
+    let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(at + AFTER)]);
+    let message = format!("this is not a text file: byte {at} is no UTF-8");
+    SceneError::at(path, &shown, at, at + 1, message)
+}
+
+/// Where the files that a scene names are.
+pub(crate) enum Files<'a> {
+    /// Beside the scene's own.
+    Folder(&'a Path),
+    /// In the program.
+    Embedded(&'static [(&'static str, &'static str)]),
+}
+
+impl Files<'_> {
+    /// The content of a file, or why there is none.
+    pub(crate) fn bytes(&self, name: &str) -> Result<Vec<u8>, String> {
+        match self {
+            Self::Folder(folder) => {
+                std::fs::read(folder.join(name)).map_err(|error| io_words(&error))
+            }
+            Self::Embedded(files) => match files.iter().find(|(file, _)| *file == name) {
+                Some((_, text)) => Ok(text.as_bytes().to_vec()),
+                None => Err("built-in scenes have no such file".to_owned()),
+            },
+        }
+    }
+
+    /// Its path, if it is there.
+    pub(crate) fn path(&self, name: &str) -> Result<PathBuf, String> {
+        match self {
+            Self::Folder(folder) => match std::fs::metadata(folder.join(name)) {
+                Ok(info) if info.is_file() => Ok(folder.join(name)),
+                Ok(_) => Err("it is a folder".to_owned()),
+                Err(error) => Err(io_words(&error)),
+            },
+            Self::Embedded(_) => Err("built-in scenes have no such file".to_owned()),
+        }
+    }
 }
 
 /// What the system says, without its number.

@@ -1,8 +1,8 @@
 //! From a checked document to a plan in numbers of one dimension: domain, materials, bodies.
 
-use super::Limits;
 use super::keys::MODULI;
 use super::read::Reader;
+use super::{Files, Limits};
 use crate::error::{SceneError, nearest};
 use crate::particle_list::ParticleList;
 use crate::sampling::{Sampling, expected_count};
@@ -124,7 +124,7 @@ impl<const D: usize> Plan<D> {
     pub(crate) fn read(
         scene: &Reader<'_>,
         limits: &Limits,
-        file: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+        files: &Files<'_>,
     ) -> Result<Self, SceneError> {
         let dx = scene.number("dx")?;
         let mut warnings = Vec::new();
@@ -168,7 +168,7 @@ impl<const D: usize> Plan<D> {
                 &materials,
                 domain.as_ref(),
                 dx,
-                file,
+                (files, limits),
                 &mut warnings,
             )?;
             if bodies.iter().any(|other: &Body<D>| other.name == body.name) {
@@ -177,7 +177,7 @@ impl<const D: usize> Plan<D> {
                 );
             }
             bodies.push(body);
-            check_count(&bodies, &table, limits)?;
+            check_count(&bodies, scene, &table, limits)?;
         }
         let mut plan = Self {
             dx,
@@ -272,7 +272,7 @@ impl<const D: usize> Plan<D> {
                 ));
                 continue;
             }
-            let c = wave_speed::<D>(material);
+            let c = material.sound_speed();
             if matches!(material.model, Model::Fluid(_)) && speed > 0.2 * c * (1.0 + 1e-9) {
                 warnings.push(format!("speeds up to {speed:.3} m/s are expected, more than a fifth of the speed of sound {c:.3} m/s of \"{}\": it will be visibly compressed", material.name));
             }
@@ -325,21 +325,10 @@ impl<const D: usize> Plan<D> {
     }
 }
 
-/// Speed of pressure waves at rest \[m/s\].
-pub(crate) fn wave_speed<const D: usize>(material: &Material) -> f64 {
-    let modulus = match material.model {
-        Model::Dust(_) => 0.0,
-        Model::Fluid(fluid) => fluid.bulk_modulus,
-        Model::Corotated(m) => m.lambda + 2.0 * m.mu,
-        Model::NeoHookean(m) => m.lambda + 2.0 * m.mu,
-        Model::Snow(m) => m.lambda + 2.0 * m.mu,
-    };
-    (modulus.max(0.0) / material.density).sqrt()
-}
-
 /// The bodies so far against the memory that may be used.
 fn check_count<const D: usize>(
     bodies: &[Body<D>],
+    scene: &Reader<'_>,
     table: &Reader<'_>,
     limits: &Limits,
 ) -> Result<(), SceneError> {
@@ -358,20 +347,20 @@ fn check_count<const D: usize>(
     if total <= most && candidates <= 64.0 * most {
         return Ok(());
     }
-    let key = ["count", "spacing", "particles_per_cell", "shape"]
+    let message = format!(
+        "this scene comes to {} particles, about {} GB; the limit is {} GB",
+        count_words(total),
+        count_words((total * Limits::BYTES_PER_PARTICLE / 1e9).ceil()),
+        limits.memory as f64 / 1e9
+    );
+    // Whatever made them so many: the body's own word, or dx.
+    let error = match ["count", "spacing", "particles_per_cell", "particles"]
         .into_iter()
         .find(|key| table.has(key))
-        .unwrap_or("particles");
-    let gigabytes = total * Limits::BYTES_PER_PARTICLE / 1e9;
-    let error = table.error_at(
-        key,
-        format!(
-            "this scene comes to {} particles, about {} GB; the limit is {} GB",
-            count_words(total),
-            count_words(gigabytes.ceil()),
-            limits.memory as f64 / 1e9
-        ),
-    );
+    {
+        Some(key) => table.error_at(key, message),
+        None => scene.error_at("dx", message),
+    };
     Err(error.hint("use a larger dx, fewer particles_per_cell or smaller bodies"))
 }
 
@@ -459,8 +448,16 @@ fn read_domain<const D: usize>(
     if let Some(i) = (0..D).find(|&i| !is_whole(sides[i] / dx)) {
         let cells = sides[i] / dx;
         let error = scene.error_at("dx", format!("the domain is {} m along {}, which is {cells:.4} cells of dx = {dx}; it must be a whole number", tidy(sides[i]), AXES[i]));
-        return Err(match fitting_dx(&sides, dx) {
-            Some(fit) => error.hint(format!("the nearest dx that fits is {fit}")),
+        return Err(match fitting_dx(&sides, dx, |_| true) {
+            Some(fit) => {
+                let round = fitting_dx(&sides, dx, |fit| tidy(fit * 1e4).fract() == 0.0)
+                    .filter(|round| *round != fit)
+                    .map(|round| format!("; a round one is {round}"));
+                error.hint(format!(
+                    "the nearest dx that fits is {fit}{}",
+                    round.unwrap_or_default()
+                ))
+            }
             None => {
                 let whole = tidy(min[i] + (cells.round().max(1.0)) * dx);
                 error.hint(format!(
@@ -484,7 +481,7 @@ const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], ["back", "f
 
 /// Whether a side is a whole number of cells, but for the rounding of decimal fractions.
 fn is_whole(cells: f64) -> bool {
-    cells > 0.5 && (cells - cells.round()).abs() <= 1e-6 * cells.max(1.0).sqrt()
+    cells > 0.5 && (cells - cells.round()).abs() <= 1e-6 * cells.max(1.0)
 }
 
 /// A length without the noise of subtraction.
@@ -492,12 +489,12 @@ fn tidy(length: f64) -> f64 {
     format!("{length:.12}").parse().unwrap_or(length)
 }
 
-/// The dx nearest to `dx` of which every side is a whole number.
-fn fitting_dx(sides: &[f64], dx: f64) -> Option<f64> {
+/// The dx nearest to `dx` of which every side is a whole number, among those that are `wanted`.
+fn fitting_dx(sides: &[f64], dx: f64, wanted: impl Fn(f64) -> bool) -> Option<f64> {
     let cells = (sides[0] / dx).round().max(1.0);
     let fits = |n: f64| {
         let fit = tidy(sides[0]) / n;
-        (n >= 1.0 && sides.iter().all(|side| is_whole(side / fit))).then_some(fit)
+        (n >= 1.0 && wanted(fit) && sides.iter().all(|side| is_whole(side / fit))).then_some(fit)
     };
     let nearer = |a: f64, b: f64| {
         if (a - dx).abs() <= (b - dx).abs() {
@@ -735,7 +732,7 @@ fn read_body<const D: usize>(
     materials: &[Material],
     domain: Option<&Domain<D>>,
     dx: f64,
-    file: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    (files, limits): (&Files<'_>, &Limits),
     warnings: &mut Vec<String>,
 ) -> Result<Body<D>, SceneError> {
     let name = table
@@ -781,7 +778,7 @@ fn read_body<const D: usize>(
         (Some(_), Some(_)) => return Err(table.error_at_key("particles", "a body has a \"shape\" or \"particles\", not both")),
         (None, None) => return Err(table.error(format!("body \"{name}\" has no shape")).hint("add, for instance, shape = { box = { min = [0.0, 0.0], max = [1.0, 1.0] } }, or particles = \"start.csv\"")),
         (Some(shape), None) => read_shape_source(&name, table, &shape, clip, dx)?,
-        (None, Some(path)) => Source::List(read_list(table, path, volume, &clip, file, warnings)?),
+        (None, Some(path)) => Source::List(read_list(table, path, volume, &clip, (files, limits), warnings)?),
     };
     Ok(Body {
         name,
@@ -961,6 +958,13 @@ fn read_shape<const D: usize>(table: &Reader<'_>, clip: Bounds<D>) -> Result<Sha
                     .hint("this scene has dimension = 3"));
             }
             let points = inner.opt_rows::<D>("points").unwrap_or_default();
+            /// Corners up to which sides are tested against each other.
+            const TESTED: usize = 4000;
+            if points.len() <= TESTED
+                && let Some((i, j)) = crossing(&points)
+            {
+                return Err(inner.error_at("points", format!("the polygon crosses itself: the sides from point {i} and from point {j} (from 0)")));
+            }
             let bounds = Shape::Polygon {
                 points: points.clone(),
             }
@@ -970,13 +974,6 @@ fn read_shape<const D: usize>(table: &Reader<'_>, clip: Bounds<D>) -> Result<Sha
                     "points",
                     format!("a polygon of {} points in a line has no area", points.len()),
                 ));
-            }
-            /// Corners up to which sides are tested against each other.
-            const TESTED: usize = 4000;
-            if points.len() <= TESTED
-                && let Some((i, j)) = crossing(&points)
-            {
-                return Err(inner.error_at("points", format!("the polygon crosses itself: the sides from point {i} and from point {j} (from 0)")));
             }
             Ok(Shape::Polygon { points })
         }
@@ -988,7 +985,7 @@ fn read_list<const D: usize>(
     path: &str,
     volume: Volume,
     clip: &Bounds<D>,
-    file: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    (files, limits): (&Files<'_>, &Limits),
     warnings: &mut Vec<String>,
 ) -> Result<ParticleList<D>, SceneError> {
     for key in ["particles_per_cell", "spacing", "count"] {
@@ -999,24 +996,22 @@ fn read_list<const D: usize>(
             ));
         }
     }
-    let bytes = file(path).map_err(|reason| {
-        table
-            .error_at(
-                "particles",
-                format!("cannot read \"{}\": {reason}", super::shorten(path)),
-            )
-            .hint("particle lists are found from the scene's folder")
-    })?;
+    let cannot = |reason: String| {
+        let error = table.error_at(
+            "particles",
+            format!("cannot read \"{}\": {reason}", super::shorten(path)),
+        );
+        error.hint("particle lists are found from the scene's folder")
+    };
     let mut list = if path.ends_with(".csv") {
+        let bytes = files.bytes(path).map_err(cannot)?;
         match core::str::from_utf8(&bytes) {
             Ok(text) => crate::particle_list::parse_csv(text, path)?,
-            Err(error) => {
-                return Err(SceneError::of_file(
-                    path,
-                    format!("this is not text: byte {} is no UTF-8", error.valid_up_to()),
-                ));
-            }
+            Err(error) => return Err(super::not_text(path, &bytes, error.valid_up_to())),
         }
+    } else if path.ends_with(".npz") {
+        let file = files.path(path).map_err(cannot)?;
+        crate::particle_list::read_npz(&file, limits.memory)?
     } else {
         return Err(table.error_at("particles", "a particle list is a .csv or .npz file"));
     };
@@ -1058,9 +1053,12 @@ mod tests {
 
     #[test]
     fn the_nearest_dx_that_fits() {
-        assert_eq!(fitting_dx(&[4.0, 2.0], 0.03), Some(4.0 / 134.0));
-        assert_eq!(fitting_dx(&[1.0, 0.75], 0.26), Some(0.25));
-        assert_eq!(fitting_dx(&[1.0, core::f64::consts::SQRT_2], 0.01), None);
+        assert_eq!(fitting_dx(&[4.0, 2.0], 0.03, |_| true), Some(4.0 / 134.0));
+        assert_eq!(fitting_dx(&[1.0, 0.75], 0.26, |_| true), Some(0.25));
+        assert_eq!(
+            fitting_dx(&[1.0, core::f64::consts::SQRT_2], 0.01, |_| true),
+            None
+        );
         assert!(
             is_whole(4.0 / 0.02) && is_whole(0.3 / 0.1) && !is_whole(4.0 / 0.03) && !is_whole(0.01)
         );

@@ -16,13 +16,14 @@ pub(crate) const NAMES: &[&str] = &[
     "dust",
     "water",
     "sea_water",
-    "glycerine",
     "honey",
+    "mercury",
     "jelly",
     "rubber",
     "snow",
 ];
 
+/// All of them. Numbers and sources are those of the simulator's own presets.
 pub(crate) const PRESETS: &[Preset] = &[
     Preset {
         name: "dust",
@@ -32,45 +33,45 @@ pub(crate) const PRESETS: &[Preset] = &[
     },
     Preset {
         name: "water",
-        keys: "model = \"fluid\"\ndensity = 998.2\nviscosity = 1.0016e-3\ncolor = \"#3d9be9\"",
+        keys: "model = \"fluid\"\ndensity = 998.2\nviscosity = 1.002e-3\ncolor = \"#3d9be9\"",
         about: "Fresh water at 20 °C.",
-        source: "IAPWS R6-95(2018) and R12-08",
+        source: "IAPWS; CRC Handbook of Chemistry and Physics",
     },
     Preset {
         name: "sea_water",
-        keys: "model = \"fluid\"\ndensity = 1024.8\nviscosity = 1.077e-3\ncolor = \"#2f86b8\"",
-        about: "Sea water of 35 g/kg salt at 20 °C.",
-        source: "ITTC 7.5-02-01-03 (2011)",
-    },
-    Preset {
-        name: "glycerine",
-        keys: "model = \"fluid\"\ndensity = 1261.0\nviscosity = 1.41\ncolor = \"#d9e8ef\"",
-        about: "Pure glycerine at 20 °C.",
-        source: "Segur & Oberstar 1951",
+        keys: "model = \"fluid\"\ndensity = 1024.8\nviscosity = 1.072e-3\ncolor = \"#2f86b8\"",
+        about: "Sea water at 20 °C with 35 g/kg of salt.",
+        source: "UNESCO equation of state 1980; Landolt–Börnstein V/3a, 1986",
     },
     Preset {
         name: "honey",
-        keys: "model = \"fluid\"\ndensity = 1420.0\nviscosity = 10.0\ncolor = \"#e3a02b\"",
-        about: "Honey of about 17 % water at 25 °C, taken as Newtonian.",
-        source: "typical of published measurements, 5 to 20 Pa s",
+        keys: "model = \"fluid\"\ndensity = 1420.0\nviscosity = 19.0\ncolor = \"#e3a02b\"",
+        about: "Clover honey with 16 % of water near 20 °C.",
+        source: "Munro 1943",
+    },
+    Preset {
+        name: "mercury",
+        keys: "model = \"fluid\"\ndensity = 13534.0\nviscosity = 1.526e-3\ncolor = \"#b9bec4\"",
+        about: "Mercury at 25 °C.",
+        source: "CRC Handbook of Chemistry and Physics",
     },
     Preset {
         name: "jelly",
-        keys: "model = \"corotated\"\ndensity = 1000.0\nyoungs_modulus = 3.0e4\npoisson_ratio = 0.3\ncolor = \"#ed553b\"",
-        about: "Firm jelly, more compressible than a real one so that large steps are possible.",
-        source: "a choice; gelatine gels have E from 1 to 100 kPa",
+        keys: "model = \"corotated\"\ndensity = 1010.0\nyoungs_modulus = 4.3e3\npoisson_ratio = 0.45\ncolor = \"#ed553b\"",
+        about: "Gelatine, one part to twenty of water; ν = 0.45 rather than nearly ½.",
+        source: "Bonavia et al., arXiv:2512.20502",
     },
     Preset {
         name: "rubber",
-        keys: "model = \"neo_hookean\"\ndensity = 1100.0\nyoungs_modulus = 1.0e6\npoisson_ratio = 0.45\ncolor = \"#3b3f46\"",
-        about: "Soft rubber.",
-        source: "typical of soft vulcanised rubber, E from 1 to 5 MPa",
+        keys: "model = \"neo_hookean\"\ndensity = 930.0\nyoungs_modulus = 2.0e6\npoisson_ratio = 0.49\ncolor = \"#3b3f46\"",
+        about: "Vulcanised natural rubber; ν = 0.49 rather than 0.4999.",
+        source: "Ashby, Materials Selection in Mechanical Design",
     },
     Preset {
         name: "snow",
         keys: "model = \"snow\"\ndensity = 400.0\nyoungs_modulus = 1.4e5\npoisson_ratio = 0.2\ncritical_compression = 2.5e-2\ncritical_stretch = 7.5e-3\nhardening = 10.0\ncolor = \"#eeeef0\"",
-        about: "Packed snow.",
-        source: "Stomakhin 2013, table 2",
+        about: "The snow of the paper.",
+        source: "Stomakhin 2013",
     },
 ];
 
@@ -89,5 +90,41 @@ mod tests {
             PRESETS.iter().map(|preset| preset.name).collect::<Vec<_>>(),
             NAMES
         );
+    }
+
+    /// The simulator has presets too, for those who write no scenes: same names, same numbers.
+    #[test]
+    fn numbers_are_those_of_the_simulator() {
+        use lahar::Model;
+        let own: Vec<&str> = NAMES
+            .iter()
+            .copied()
+            .filter(|name| *name != "dust")
+            .collect();
+        let simulators: Vec<&str> = lahar::material::PRESETS
+            .iter()
+            .map(|(name, _)| *name)
+            .collect();
+        assert_eq!(own, simulators);
+        for name in own {
+            let text = format!(
+                "dimension = 3\ndx = 0.1\n[materials.m]\npreset = \"{name}\"\n[[bodies]]\nmaterial = \"m\"\n\
+                 shape = {{ ball = {{ center = [0, 0, 0], radius = 1 }} }}"
+            );
+            let material = crate::scene::Scene::parse(&text, "a", &[])
+                .unwrap()
+                .material(0)
+                .clone();
+            let theirs = lahar::material::preset(name, material.sound_speed()).unwrap();
+            assert_eq!(material.density, theirs.density, "{name}");
+            match (material.model, theirs.model) {
+                (Model::Fluid(a), Model::Fluid(mut b)) => {
+                    assert!((a.bulk_modulus / b.bulk_modulus - 1.0).abs() < 1e-12);
+                    b.bulk_modulus = a.bulk_modulus;
+                    assert_eq!(a, b, "{name}");
+                }
+                (a, b) => assert_eq!(a, b, "{name}"),
+            }
+        }
     }
 }

@@ -21,10 +21,6 @@ impl<'a> Reader<'a> {
         }
     }
 
-    pub(crate) fn sources(&self) -> &'a Sources {
-        self.sources
-    }
-
     /// An error at the table itself.
     pub(crate) fn error(&self, message: impl Into<String>) -> SceneError {
         self.sources.error(self.span, message)
