@@ -38,8 +38,12 @@ pub(crate) fn open(what: Option<&str>) -> Result<ExitCode, CliError> {
 
 /// Opens the window and returns when it is closed, or says why there is none.
 #[cfg(feature = "window")]
-fn open_window(_scene: Option<&str>) -> Result<(), String> {
-    Err("this version has none yet".to_owned())
+fn open_window(scene: Option<&str>) -> Result<(), String> {
+    let options = lahar_app::Options {
+        scene: scene.map(str::to_owned),
+        ..lahar_app::Options::default()
+    };
+    lahar_app::run(options).map_err(|error| error.to_string())
 }
 
 /// Says why there is no window.

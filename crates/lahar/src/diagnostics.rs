@@ -1,10 +1,10 @@
 //! What the whole of the particles comes to: one row of diagnostics.csv. In f64, in a fixed order.
 
-use crate::math::Lanes;
+use crate::instance::Instance;
 use crate::setup::Transfer;
 use crate::simulation::{Simulation, three};
 use crate::store::{Layout, PerParticle};
-use crate::transfer::scatter::{What, scatter};
+use crate::transfer::scatter::What;
 
 /// Totals at one moment. Vectors have three components; in 2D the third is zero, and angular
 /// momentum is its third component.
@@ -45,7 +45,9 @@ pub struct Diagnostics {
 }
 
 /// A row, now. The particles must be inside their tiles.
-pub(crate) fn measure<T: Lanes, const D: usize>(simulation: &mut Simulation<T, D>) -> Diagnostics {
+pub(crate) fn measure<T: Instance<D>, const D: usize>(
+    simulation: &mut Simulation<T, D>,
+) -> Diagnostics {
     let volume = filled_volume(simulation);
     let control = &mut simulation.control;
     let (dt_min, dt_limit) = control.shortest_since_asked();
@@ -119,10 +121,10 @@ pub(crate) fn measure<T: Lanes, const D: usize>(simulation: &mut Simulation<T, D
 }
 
 /// Σ over nodes of min(1, rest volume at the node / dxᴰ) dxᴰ: the space that is filled.
-fn filled_volume<T: Lanes, const D: usize>(simulation: &mut Simulation<T, D>) -> f64 {
+fn filled_volume<T: Instance<D>, const D: usize>(simulation: &mut Simulation<T, D>) -> f64 {
     for group in &simulation.groups {
         let tiles = simulation.grid.tiles_mut();
-        scatter(
+        T::scatter(
             group,
             simulation.scheme,
             simulation.isa,

@@ -8,8 +8,9 @@ use crate::diagnostics::Diagnostics;
 use crate::dispatch;
 use crate::error::{DtLimit, Failure, SetupError};
 use crate::grid::{Grid, NodeForces, NodePointer};
-use crate::material::{IsaToken, Law, built_in};
-use crate::math::{Lanes, Vector};
+use crate::instance::Instance;
+use crate::material::{IsaToken, Law};
+use crate::math::Vector;
 use crate::particles::{Field, Snapshot};
 use crate::setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
 use crate::sort::{DRIFT_LIMIT, Escaped, Sorter, in_range};
@@ -142,7 +143,7 @@ pub struct Memory {
 /// assert!(simulation.diagnostics().momentum[1] < 0.0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct Simulation<T: Lanes, const D: usize> {
+pub struct Simulation<T: Instance<D>, const D: usize> {
     pub(crate) setup: Setup<D>,
     pub(crate) walls: Walls<D>,
     /// Where node 0 is \[m\].
@@ -173,7 +174,7 @@ fn setup_error<R>(key: &str, message: String) -> Result<R, SetupError> {
     })
 }
 
-impl<T: Lanes, const D: usize> Simulation<T, D> {
+impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     /// Checks the setup and takes in the particles.
     ///
     /// # Errors
@@ -182,7 +183,7 @@ impl<T: Lanes, const D: usize> Simulation<T, D> {
         let laws = setup
             .materials
             .iter()
-            .map(|material| built_in(&material.model))
+            .map(|material| T::built_in(&material.model))
             .collect();
         Self::with_laws(setup, laws, batches)
     }
@@ -414,7 +415,7 @@ impl<T: Lanes, const D: usize> Simulation<T, D> {
         let start = self.now();
         let what = crate::transfer::scatter::What::Momentum;
         for group in &self.groups {
-            crate::transfer::scatter::scatter(
+            T::scatter(
                 group,
                 self.scheme,
                 self.isa,
@@ -440,7 +441,7 @@ impl<T: Lanes, const D: usize> Simulation<T, D> {
                 action: pointer.action,
             }),
         };
-        self.grid.update(self.isa, &forces, &self.walls);
+        T::update(&mut self.grid, self.isa, &forces, &self.walls);
         self.times.grid += self.now() - start;
     }
 
@@ -450,14 +451,7 @@ impl<T: Lanes, const D: usize> Simulation<T, D> {
         let (mut speed_squared, mut moved, mut wave_speed_squared) = (0.0_f64, 0.0_f64, 0.0_f64);
         let mut failure = None;
         for (material, group) in self.groups.iter_mut().enumerate() {
-            let found = crate::transfer::gather::gather(
-                group,
-                &self.grid,
-                &self.walls,
-                self.scheme,
-                self.isa,
-                dt,
-            );
+            let found = T::gather(group, &self.grid, &self.walls, self.scheme, self.isa, dt);
             speed_squared = speed_squared.max(found.speed_squared);
             moved = moved.max(found.moved);
             wave_speed_squared = wave_speed_squared.max(found.wave_modulus / group.density);
@@ -670,7 +664,7 @@ fn check_batch<const D: usize>(
     Ok(())
 }
 
-impl<T: Lanes, const D: usize> Simulate for Simulation<T, D> {
+impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
     fn dimension(&self) -> usize {
         D
     }

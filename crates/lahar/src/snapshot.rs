@@ -1,6 +1,6 @@
 //! Copies of particles for everything outside: rows by ascending id, whatever the order of storage.
 
-use crate::math::Lanes;
+use crate::instance::Instance;
 use crate::parallel;
 use crate::particles::{Data, Field, Snapshot};
 use crate::simulation::Simulation;
@@ -18,7 +18,7 @@ struct Place<const D: usize> {
 /// Rows that are worth a piece of parallel work of their own.
 const SMALLEST_PIECE: usize = 1 << 13;
 
-pub(crate) fn snapshot<T: Lanes, const D: usize>(
+pub(crate) fn snapshot<T: Instance<D>, const D: usize>(
     simulation: &Simulation<T, D>,
     fields: &[Field],
 ) -> Snapshot {
@@ -47,7 +47,7 @@ pub(crate) fn snapshot<T: Lanes, const D: usize>(
     }
 }
 
-fn column<T: Lanes, const D: usize>(
+fn column<T: Instance<D>, const D: usize>(
     simulation: &Simulation<T, D>,
     field: Field,
     places: &[Place<D>],

@@ -7,7 +7,7 @@ mod engine;
 
 use common::brawl;
 use engine::{Engine, Fast, Oracle, State};
-use lahar::math::Lanes;
+use lahar::Instance;
 use lahar::{
     Contact, Domain, ForceForm, Isa, Kernel, ParticleBatch, Setup, Sides, Simulate, Simulation,
     TimeStep, Transfer, WallStyle,
@@ -48,7 +48,7 @@ fn worst<const D: usize>(a: &[State<D>], b: &[State<D>]) -> f64 {
 }
 
 /// Runs both and returns the worst difference.
-fn compare<T: Lanes, const D: usize>(
+fn compare<T: Instance<D>, const D: usize>(
     setup: &Setup<D>,
     batches: &[ParticleBatch<D>],
     steps: usize,
@@ -63,7 +63,7 @@ fn compare<T: Lanes, const D: usize>(
 }
 
 /// Balls of every material in a small box: all kernels, forces and transfers that there are.
-fn every_scheme<T: Lanes, const D: usize>(cells: usize, steps: usize, limit: f64) {
+fn every_scheme<T: Instance<D>, const D: usize>(cells: usize, steps: usize, limit: f64) {
     let (mut setup, batches) = brawl::<D>(cells);
     setup.time_step = TimeStep::Fixed(4e-4);
     let combinations = [

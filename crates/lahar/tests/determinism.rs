@@ -3,12 +3,12 @@
 mod common;
 
 use common::{ALL, bits, brawl, run_on};
-use lahar::math::Lanes;
+use lahar::Instance;
 use lahar::particles::Field;
 use lahar::{Isa, Simulate, Simulation, Transfer};
 
 /// Bits on 1, 2, 3 and 8 threads, over enough sorts that particles change blocks and order.
-fn same_bits_on_any_number_of_threads<T: Lanes, const D: usize>(
+fn same_bits_on_any_number_of_threads<T: Instance<D>, const D: usize>(
     cells: usize,
     time: f64,
     transfer: Transfer,
@@ -63,7 +63,7 @@ fn threads_do_not_change_bits_3d() {
 }
 
 /// The same scene elsewhere: everything but positions keeps its bits.
-fn same_bits_elsewhere<T: Lanes, const D: usize>(shift_cells: f64) {
+fn same_bits_elsewhere<T: Instance<D>, const D: usize>(shift_cells: f64) {
     let (mut setup, batches) = brawl::<D>(32);
     setup.domain = None;
     setup.gravity = [0.0; D];

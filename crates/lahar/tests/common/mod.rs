@@ -165,7 +165,7 @@ pub(crate) fn bits(snapshot: &Snapshot) -> Vec<u64> {
 }
 
 /// Runs to `time` on `threads` threads.
-pub(crate) fn run_on<T: lahar::math::Lanes, const D: usize>(
+pub(crate) fn run_on<T: lahar::Instance<D>, const D: usize>(
     threads: usize,
     setup: &Setup<D>,
     batches: &[ParticleBatch<D>],

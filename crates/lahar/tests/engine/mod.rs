@@ -3,7 +3,8 @@
 //! An engine only steps and shows its particles. Whatever is summed over them (energies, momenta)
 //! is summed by the oracle, from what the engine shows.
 
-use lahar::math::{Lanes, Matrix, Vector};
+use lahar::Instance;
+use lahar::math::{Matrix, Vector};
 use lahar::particles::Field;
 use lahar::reference::Reference;
 use lahar::{Deformation, ParticleBatch, Setup, Simulate, Simulation, TimeStep};
@@ -147,9 +148,9 @@ pub(crate) fn times<const D: usize>(matrix: [[f64; D]; D], vector: [f64; D]) -> 
 }
 
 /// [`lahar::Simulation`] as an engine.
-pub(crate) struct Fast<T: Lanes, const D: usize>(Simulation<T, D>);
+pub(crate) struct Fast<T: Instance<D>, const D: usize>(Simulation<T, D>);
 
-impl<T: Lanes, const D: usize> Engine<D> for Fast<T, D> {
+impl<T: Instance<D>, const D: usize> Engine<D> for Fast<T, D> {
     const EPSILON: f64 = if size_of::<T>() == 8 {
         f64::EPSILON
     } else {

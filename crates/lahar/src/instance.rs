@@ -1,0 +1,105 @@
+//! The heavy code, compiled once.
+//!
+//! [`Simulation`](crate::Simulation) is generic, and generic code is compiled again in every crate
+//! and test program that uses it: with all instruction sets, minutes each. The loops are therefore
+//! reached through [`Instance`], whose four implementations are concrete and so belong to this
+//! crate alone.
+
+use crate::boundary::walls::Walls;
+use crate::grid::{Grid, NodeForces};
+use crate::material::{IsaToken, Law, Model};
+use crate::math::Lanes;
+use crate::store::Group;
+use crate::transfer::gather::Bounds;
+use crate::transfer::scatter::What;
+use crate::transfer::{Scheme, gather, scatter};
+
+/// Numbers that there is an engine for in `D` dimensions: `f32` and `f64` in 2D and 3D.
+pub trait Instance<const D: usize>: Kernels<D> {}
+
+/// The loops of the method, and the laws.
+#[expect(
+    private_interfaces,
+    reason = "sealed: outside of this crate it is only a bound"
+)]
+pub trait Kernels<const D: usize>: Lanes {
+    /// The law of a built-in model.
+    #[doc(hidden)]
+    fn built_in(model: &Model) -> Box<dyn Law<Self, D>>;
+    /// P2G.
+    #[doc(hidden)]
+    fn scatter(
+        group: &Group<Self, D>,
+        scheme: Scheme,
+        isa: IsaToken,
+        dt: f64,
+        what: What,
+        tiles: &mut [Self],
+    );
+    /// The grid update.
+    #[doc(hidden)]
+    fn update(
+        grid: &mut Grid<Self, D>,
+        isa: IsaToken,
+        forces: &NodeForces<Self, D>,
+        walls: &Walls<D>,
+    );
+    /// G2P.
+    #[doc(hidden)]
+    fn gather(
+        group: &mut Group<Self, D>,
+        grid: &Grid<Self, D>,
+        walls: &Walls<D>,
+        scheme: Scheme,
+        isa: IsaToken,
+        dt: f64,
+    ) -> Bounds;
+}
+
+macro_rules! instance {
+    ($($scalar:ty, $d:literal;)*) => {$(
+        impl Instance<$d> for $scalar {}
+
+        #[expect(private_interfaces, reason = "sealed: outside of this crate it is only a bound")]
+        impl Kernels<$d> for $scalar {
+            fn built_in(model: &Model) -> Box<dyn Law<Self, $d>> {
+                crate::material::built_in(model)
+            }
+            fn scatter(
+                group: &Group<Self, $d>,
+                scheme: Scheme,
+                isa: IsaToken,
+                dt: f64,
+                what: What,
+                tiles: &mut [Self],
+            ) {
+                scatter::scatter(group, scheme, isa, dt, what, tiles);
+            }
+            fn update(
+                grid: &mut Grid<Self, $d>,
+                isa: IsaToken,
+                forces: &NodeForces<Self, $d>,
+                walls: &Walls<$d>,
+            ) {
+                grid.update(isa, forces, walls);
+            }
+            fn gather(
+                group: &mut Group<Self, $d>,
+                grid: &Grid<Self, $d>,
+                walls: &Walls<$d>,
+                scheme: Scheme,
+                isa: IsaToken,
+                dt: f64,
+            ) -> Bounds {
+                gather::gather(group, grid, walls, scheme, isa, dt)
+            }
+        }
+    )*};
+}
+
+instance! {
+    f32, 2;
+    f64, 2;
+    f32, 3;
+    f64, 3;
+}
