@@ -1,0 +1,349 @@
+//! What particles are coloured by: the numbers, their range, and the colours.
+
+use eframe::egui::Color32;
+use lahar::{Field, Snapshot};
+
+use crate::scenes::{Look, Swatch};
+use crate::solver::Facts;
+
+/// Behind everything (Taichi's examples: 0x112F41).
+pub const BACKGROUND: Color32 = Color32::from_rgb(0x11, 0x2f, 0x41);
+/// Water (Taichi's examples: 0x068587).
+pub const LIQUID: Color32 = Color32::from_rgb(0x06, 0x85, 0x87);
+/// Elastic bodies (Taichi's examples: 0xED553B).
+pub const JELLY: Color32 = Color32::from_rgb(0xed, 0x55, 0x3b);
+/// Snow (Taichi's examples: 0xEEEEF0).
+pub const SNOW: Color32 = Color32::from_rgb(0xee, 0xee, 0xf0);
+
+/// What particles are coloured by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColourBy {
+    /// What they are made of.
+    #[default]
+    Material,
+    /// |v| \[m/s\].
+    Speed,
+    /// −tr σ/d \[Pa\].
+    Pressure,
+    /// m/(J V⁰) \[kg/m³\].
+    Density,
+    /// J = V/V⁰.
+    Jacobian,
+}
+
+impl ColourBy {
+    /// All, in the order of the key C.
+    pub const ALL: [Self; 5] = [
+        Self::Material,
+        Self::Speed,
+        Self::Pressure,
+        Self::Density,
+        Self::Jacobian,
+    ];
+
+    /// The next one.
+    pub fn next(self) -> Self {
+        let at = Self::ALL.iter().position(|&by| by == self).unwrap_or(0);
+        Self::ALL[(at + 1) % Self::ALL.len()]
+    }
+
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Material => "material",
+            Self::Speed => "speed",
+            Self::Pressure => "pressure",
+            Self::Density => "density",
+            Self::Jacobian => "volume ratio J",
+        }
+    }
+
+    /// Unit of its numbers, in `dimension` dimensions.
+    pub fn unit(self, dimension: usize) -> &'static str {
+        match (self, dimension) {
+            (Self::Material | Self::Jacobian, _) => "",
+            (Self::Speed, _) => "m/s",
+            (Self::Pressure, _) => "Pa",
+            (Self::Density, 2) => "kg/m²",
+            (Self::Density, _) => "kg/m³",
+        }
+    }
+
+    /// Fields that it needs of a snapshot.
+    pub fn fields(self) -> Vec<Field> {
+        match self {
+            Self::Material => vec![],
+            Self::Speed => vec![Field::Velocity],
+            Self::Pressure => vec![Field::Pressure],
+            Self::Density => vec![Field::Mass, Field::Jacobian],
+            Self::Jacobian => vec![Field::Jacobian],
+        }
+    }
+
+    /// One number a particle; `None` for [`ColourBy::Material`], and while the snapshot has not
+    /// got the fields.
+    pub fn values(self, snapshot: &Snapshot) -> Option<Vec<f32>> {
+        let get = |field| snapshot.get(field).map(lahar::Data::to_f32);
+        match self {
+            Self::Material => None,
+            Self::Speed => Some(
+                get(Field::Velocity)?
+                    .chunks_exact(snapshot.dimension)
+                    .map(|v| v.iter().map(|c| c * c).sum::<f32>().sqrt())
+                    .collect(),
+            ),
+            Self::Pressure => get(Field::Pressure),
+            Self::Density => {
+                let (m, v, j) = (
+                    get(Field::Mass)?,
+                    get(Field::Volume0)?,
+                    get(Field::Jacobian)?,
+                );
+                let density = |((m, v), j): ((&f32, &f32), &f32)| m / (v * j);
+                Some(m.iter().zip(&v).zip(&j).map(density).collect())
+            }
+            Self::Jacobian => get(Field::Jacobian),
+        }
+    }
+
+    /// The colours of its range, low to high, evenly spaced.
+    pub fn ramp(self) -> &'static [Color32] {
+        match self {
+            Self::Material => &[],
+            Self::Speed => &SEQUENTIAL,
+            Self::Pressure => &WARM,
+            Self::Density | Self::Jacobian => &DIVERGING,
+        }
+    }
+
+    /// The range of `values` worth telling apart.
+    fn range_of(self, values: &[f32]) -> Option<(f32, f32)> {
+        // A sample is enough, and outliers should not flatten the rest.
+        let every = values.len().div_ceil(SAMPLE).max(1);
+        let mut sample: Vec<f32> = values
+            .iter()
+            .step_by(every)
+            .copied()
+            .filter(|v| v.is_finite())
+            .collect();
+        if sample.is_empty() {
+            return None;
+        }
+        sample.sort_by(f32::total_cmp);
+        let quantile = |q: f32| sample[((sample.len() - 1) as f32 * q).round() as usize];
+        let (low, high) = (quantile(0.01), quantile(0.99));
+        Some(match self {
+            Self::Material => (0.0, 1.0),
+            Self::Speed => (0.0, high),
+            Self::Pressure => (if -low < 1e-3 * high { 0.0 } else { low }, high),
+            // Symmetric about rest, which is what most particles are near.
+            Self::Density => around(quantile(0.5), low, high),
+            Self::Jacobian => around(1.0, low, high),
+        })
+    }
+}
+
+/// Particles looked at to find a range.
+const SAMPLE: usize = 4096;
+
+const SEQUENTIAL: [Color32; 5] = [
+    Color32::from_rgb(0x0d, 0x5c, 0x86),
+    Color32::from_rgb(0x0d, 0x97, 0x9b),
+    Color32::from_rgb(0x7f, 0xd0, 0x9c),
+    Color32::from_rgb(0xf5, 0xe3, 0x8b),
+    Color32::from_rgb(0xff, 0xff, 0xff),
+];
+const WARM: [Color32; 5] = [
+    Color32::from_rgb(0x3b, 0x3a, 0x8c),
+    Color32::from_rgb(0x8a, 0x44, 0xa6),
+    Color32::from_rgb(0xdb, 0x4d, 0x6d),
+    Color32::from_rgb(0xf9, 0x96, 0x4d),
+    Color32::from_rgb(0xfc, 0xf3, 0xa8),
+];
+const DIVERGING: [Color32; 3] = [
+    Color32::from_rgb(0x3d, 0x86, 0xe0),
+    Color32::from_rgb(0xe4, 0xe8, 0xea),
+    Color32::from_rgb(0xed, 0x55, 0x3b),
+];
+
+fn around(centre: f32, low: f32, high: f32) -> (f32, f32) {
+    let reach = (centre - low).max(high - centre).max(centre.abs() * 1e-3);
+    (centre - reach, centre + reach)
+}
+
+/// Low and high end of a legend; follows the numbers without flicker.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Range {
+    /// What this is the range of.
+    by: ColourBy,
+    ends: Option<(f32, f32)>,
+}
+
+impl Range {
+    /// The ends; (0, 1) before there is anything.
+    pub fn ends(&self) -> (f32, f32) {
+        self.ends.unwrap_or((0.0, 1.0))
+    }
+
+    /// Takes in new numbers: widens at once, narrows slowly.
+    pub fn follow(&mut self, by: ColourBy, values: &[f32]) {
+        const NARROW: f32 = 0.03;
+        if self.by != by {
+            *self = Self { by, ends: None };
+        }
+        let Some((low, high)) = by.range_of(values) else {
+            return;
+        };
+        let (low, high) = match self.ends {
+            None => (low, high),
+            Some((old_low, old_high)) => (
+                low.min(old_low + (low - old_low) * NARROW),
+                high.max(old_high + (high - old_high) * NARROW),
+            ),
+        };
+        self.ends = Some((low, high.max(low + f32::MIN_POSITIVE)));
+    }
+
+    /// Forgets all numbers.
+    pub fn forget(&mut self) {
+        self.ends = None;
+    }
+}
+
+/// The colour at `at` in 0..=1 of a ramp.
+pub fn along(ramp: &[Color32], at: f32) -> Color32 {
+    let Some(last) = ramp.len().checked_sub(1) else {
+        return Color32::GRAY;
+    };
+    if !at.is_finite() {
+        return Color32::from_rgb(0xff, 0x00, 0xff); // not a number: cannot be overlooked
+    }
+    let at = at.clamp(0.0, 1.0) * last as f32;
+    let i = (at as usize).min(last.saturating_sub(1));
+    let (a, b) = (ramp[i], ramp[(i + 1).min(last)]);
+    a.lerp_to_gamma(b, at - i as f32)
+}
+
+/// Colours of the swatches at first; the person at the window may change them.
+pub fn palette(swatches: &[Swatch]) -> Vec<Color32> {
+    /// For the second of a look, and for what has none.
+    const OTHERS: [Color32; 6] = [
+        Color32::from_rgb(0xe9, 0xb4, 0x4c),
+        Color32::from_rgb(0x8e, 0x7d, 0xbe),
+        Color32::from_rgb(0x6f, 0xb2, 0x6b),
+        Color32::from_rgb(0xd4, 0x7f, 0xa6),
+        Color32::from_rgb(0x5b, 0xa4, 0xe6),
+        Color32::from_rgb(0xb0, 0x8d, 0x6e),
+    ];
+    let mut used: Vec<Look> = vec![];
+    let mut others = OTHERS.iter().cycle().copied();
+    swatches
+        .iter()
+        .map(|swatch| {
+            if let Some([r, g, b]) = swatch.colour {
+                return Color32::from_rgb(r, g, b);
+            }
+            let first = !used.contains(&swatch.look);
+            used.push(swatch.look);
+            let own = match swatch.look {
+                Look::Liquid => Some(LIQUID),
+                Look::Jelly => Some(JELLY),
+                Look::Snow => Some(SNOW),
+                Look::Dust | Look::Other => None,
+            };
+            own.filter(|_| first)
+                .or_else(|| others.next())
+                .unwrap_or(Color32::GRAY)
+        })
+        .collect()
+}
+
+/// One colour a particle.
+pub fn colours(
+    by: ColourBy,
+    snapshot: &Snapshot,
+    facts: &Facts,
+    palette: &[Color32],
+    range: &mut Range,
+) -> Vec<[u8; 4]> {
+    if let Some(values) = by.values(snapshot) {
+        range.follow(by, &values);
+        let (low, high) = range.ends();
+        // 256 steps are as fine as the screen shows, and cheaper than a blend a particle.
+        let steps: Vec<_> = (0..256)
+            .map(|i| along(by.ramp(), i as f32 / 255.0).to_array())
+            .collect();
+        let not_a_number = along(by.ramp(), f32::NAN).to_array();
+        return values
+            .iter()
+            .map(|v| {
+                let at = (v - low) / (high - low);
+                if at.is_finite() {
+                    steps[(at.clamp(0.0, 1.0) * 255.0) as usize]
+                } else {
+                    not_a_number
+                }
+            })
+            .collect();
+    }
+    let first = palette.first().copied().unwrap_or(LIQUID).to_array();
+    let of_body: Vec<[u8; 4]> = facts
+        .body_swatches
+        .iter()
+        .map(|&swatch| palette.get(swatch).map_or(first, Color32::to_array))
+        .collect();
+    match snapshot.get(Field::Body) {
+        Some(lahar::Data::U32(bodies)) => bodies
+            .iter()
+            .map(|&body| of_body.get(body as usize).copied().unwrap_or(first))
+            .collect(),
+        _ => vec![first; snapshot.count],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn c_goes_round_all_of_them() {
+        let mut by = ColourBy::Material;
+        for _ in ColourBy::ALL {
+            by = by.next();
+        }
+        assert_eq!(by, ColourBy::Material);
+    }
+
+    #[test]
+    fn a_ramp_begins_and_ends_with_its_ends() {
+        assert_eq!(along(&SEQUENTIAL, 0.0), SEQUENTIAL[0]);
+        assert_eq!(along(&SEQUENTIAL, 1.0), SEQUENTIAL[4]);
+        assert_eq!(along(&SEQUENTIAL, 7.0), SEQUENTIAL[4]);
+        assert_eq!(along(&DIVERGING, 0.5), DIVERGING[1]);
+    }
+
+    #[test]
+    fn a_range_widens_at_once_and_narrows_slowly() {
+        let mut range = Range::default();
+        range.follow(ColourBy::Speed, &[0.0, 1.0]);
+        assert_eq!(range.ends(), (0.0, 1.0));
+        range.follow(ColourBy::Speed, &[0.0, 5.0]);
+        assert_eq!(range.ends(), (0.0, 5.0));
+        range.follow(ColourBy::Speed, &[0.0, 1.0]);
+        assert!(range.ends().1 > 4.0 && range.ends().1 < 5.0);
+        range.follow(ColourBy::Jacobian, &[0.9, 1.05]);
+        assert!((range.ends().0 - 0.9).abs() < 1e-6 && (range.ends().1 - 1.1).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_lineage_colours_are_theirs_and_a_second_liquid_has_its_own() {
+        let swatch = |look| Swatch {
+            name: String::new(),
+            look,
+            colour: None,
+        };
+        let palette = palette(&[Look::Liquid, Look::Jelly, Look::Snow, Look::Liquid].map(swatch));
+        assert_eq!(palette[..3], [LIQUID, JELLY, SNOW]);
+        assert!(!palette[..3].contains(&palette[3]));
+    }
+}

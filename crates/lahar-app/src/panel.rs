@@ -1,0 +1,246 @@
+//! The side panel: everything that the keys do, and sliders, for the mouse.
+
+use eframe::egui::{self, RichText, Slider, Ui};
+
+use crate::app_state::AppState;
+use crate::colour::ColourBy;
+use crate::controls::{Action, Direction};
+use crate::solver::Condition;
+
+/// The whole panel.
+pub fn panel(state: &mut AppState, ui: &mut Ui) {
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        ui.heading("lahar");
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            if ui
+                .small_button("«")
+                .on_hover_text("Hide the panel (P)")
+                .clicked()
+            {
+                state.act(Action::Panel);
+            }
+        });
+    });
+    egui::ScrollArea::vertical().show(ui, |ui| {
+        scene(state, ui);
+        ui.separator();
+        clock(state, ui);
+        ui.separator();
+        gravity(state, ui);
+        ui.separator();
+        looks(state, ui);
+        ui.separator();
+        hand(state, ui);
+        ui.separator();
+        readouts(state, ui);
+    });
+}
+
+fn scene(state: &mut AppState, ui: &mut Ui) {
+    let mut chosen = None;
+    let title = state
+        .facts()
+        .map_or_else(|| state.scene.clone(), |facts| facts.card.title.clone());
+    ui.horizontal(|ui| {
+        egui::ComboBox::from_id_salt("scene")
+            .selected_text(title)
+            .width(150.0)
+            .show_ui(ui, |ui| {
+                for (i, card) in state.scenes.iter().enumerate() {
+                    let title = &card.title;
+                    let text = if i < 9 {
+                        format!("{}  {title}", i + 1)
+                    } else {
+                        title.clone()
+                    };
+                    if ui
+                        .selectable_label(card.name == state.scene, text)
+                        .clicked()
+                    {
+                        chosen = Some(card.name.clone());
+                    }
+                }
+            });
+        if ui
+            .button("List")
+            .on_hover_text("What there is to see (L)")
+            .clicked()
+        {
+            state.act(Action::SceneList);
+        }
+    });
+    if let Some(name) = chosen {
+        state.open(name);
+    }
+}
+
+fn clock(state: &mut AppState, ui: &mut Ui) {
+    ui.horizontal(|ui| {
+        if ui.button("Restart").on_hover_text("R").clicked() {
+            state.act(Action::Restart);
+        }
+        let pause = if state.paused { "Go on" } else { "Pause" };
+        if ui.button(pause).on_hover_text("Space").clicked() {
+            state.act(Action::Pause);
+        }
+        if ui.button("Substep").on_hover_text(".").clicked() {
+            state.act(Action::Substep);
+        }
+    });
+    let mut speed = state.speed;
+    let slider = Slider::new(&mut speed, 0.01..=8.0)
+        .logarithmic(true)
+        .suffix("×")
+        .text("speed");
+    if ui
+        .add(slider)
+        .on_hover_text("Simulated seconds a second, at most (+ and −)")
+        .changed()
+    {
+        state.set_speed(speed);
+    }
+}
+
+fn gravity(state: &mut AppState, ui: &mut Ui) {
+    let mut gravity = state.gravity;
+    let dimension = state.facts().map_or(2, |facts| facts.dimension);
+    let most = 2.0 * state.scene_gravity();
+    let mut changed = false;
+    for (component, name) in gravity.iter_mut().zip(["x", "y", "z"]).take(dimension) {
+        let slider = Slider::new(component, -most..=most)
+            .suffix(" m/s²")
+            .text(format!("gravity {name}"))
+            .fixed_decimals(2);
+        changed |= ui.add(slider).changed();
+    }
+    if changed {
+        state.set_gravity(gravity);
+    }
+    ui.horizontal(|ui| {
+        for (label, name, direction) in [
+            ("←", "left (A)", Direction::Left),
+            ("→", "right (D)", Direction::Right),
+            ("↑", "up (W)", Direction::Up),
+            ("↓", "down (S)", Direction::Down),
+        ] {
+            let text = format!("Gravity to the window's {name}");
+            if ui.button(label).on_hover_text(text).clicked() {
+                state.act(Action::Gravity(direction));
+            }
+        }
+        if ui.button("None").clicked() {
+            state.set_gravity([0.0; 3]);
+        }
+        let own = state.facts().map(|facts| facts.gravity);
+        if ui.button("Scene's").clicked()
+            && let Some(own) = own
+        {
+            state.set_gravity(own);
+        }
+    });
+}
+
+fn looks(state: &mut AppState, ui: &mut Ui) {
+    let mut by = state.colour_by;
+    egui::ComboBox::from_label("colours")
+        .selected_text(by.name())
+        .show_ui(ui, |ui| {
+            for choice in ColourBy::ALL {
+                ui.selectable_value(&mut by, choice, choice.name());
+            }
+        });
+    if by != state.colour_by {
+        state.set_colour_by(by);
+    }
+    ui.add(
+        Slider::new(&mut state.radius, 0.1..=2.0)
+            .text("radius")
+            .fixed_decimals(2),
+    )
+    .on_hover_text("Of a particle, in parts of the distance to its neighbours");
+    if state.colour_by == ColourBy::Material {
+        let names: Vec<String> = state
+            .facts()
+            .map(|facts| facts.swatches.iter().map(|s| s.name.clone()).collect())
+            .unwrap_or_default();
+        let mut changed = false;
+        for (colour, name) in state.palette.iter_mut().zip(&names) {
+            ui.horizontal(|ui| {
+                let label = ui.label(name).id;
+                changed |= ui
+                    .color_edit_button_srgba(colour)
+                    .labelled_by(label)
+                    .changed();
+            });
+        }
+        if changed {
+            state.repaint();
+        }
+    }
+}
+
+fn hand(state: &mut AppState, ui: &mut Ui) {
+    ui.add(
+        Slider::new(&mut state.hand.strength, 0.1..=20.0)
+            .logarithmic(true)
+            .suffix(" g")
+            .text("hand"),
+    )
+    .on_hover_text("How hard the mouse pulls, in parts of the scene's gravity");
+    ui.add(
+        Slider::new(&mut state.hand.reach, 0.02..=2.0)
+            .logarithmic(true)
+            .text("reach"),
+    )
+    .on_hover_text("How far, in parts of the scene's smallest extent");
+}
+
+fn readouts(state: &AppState, ui: &mut Ui) {
+    let now = state.readouts();
+    egui::Grid::new("readouts").num_columns(2).show(ui, |ui| {
+        let mut row = |name: &str, value: String| {
+            ui.label(name);
+            ui.label(RichText::new(value).monospace());
+            ui.end_row();
+        };
+        row("simulated", format!("{:.3} s", now.time));
+        row("real time", real_time(state));
+        row("substeps a frame", now.substeps_per_frame.to_string());
+        row("dt", format!("{:.3e} s", now.dt));
+        row("limited by", now.limit.name().to_owned());
+        row("particles", grouped(now.particles as u64));
+        row("particle-steps/s", millions(now.particle_steps_per_second));
+        if let Some(facts) = state.facts() {
+            row("numbers", facts.numbers.clone());
+        }
+    });
+}
+
+/// "0.98×", or why not.
+pub fn real_time(state: &AppState) -> String {
+    match state.shown().condition {
+        Condition::Running => format!("{:.2}×", state.readouts().real_time),
+        Condition::Paused => "paused".to_owned(),
+        Condition::Opening => "opening".to_owned(),
+        Condition::Failed(_) => "stopped".to_owned(),
+    }
+}
+
+/// "12.3 M".
+pub fn millions(rate: f64) -> String {
+    format!("{:.2} M", rate / 1e6)
+}
+
+/// "12 345".
+pub fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let mut out = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            out.push('\u{202f}');
+        }
+        out.push(digit);
+    }
+    out
+}

@@ -1,0 +1,55 @@
+//! F12: the window into a PNG file.
+
+use std::fs::OpenOptions;
+use std::io::{BufWriter, ErrorKind};
+use std::path::{Path, PathBuf};
+
+use eframe::egui::ColorImage;
+
+/// Writes the picture under the first free name `lahar-SCENE-000.png`, …, and returns its path.
+///
+/// # Errors
+/// A sentence with the path.
+pub(crate) fn save(folder: &Path, scene: &str, image: &ColorImage) -> Result<PathBuf, String> {
+    let stem: String = Path::new(scene)
+        .file_stem()
+        .map_or_else(|| "scene".into(), |stem| stem.to_string_lossy())
+        .chars()
+        .map(|c| {
+            if c.is_alphanumeric() || c == '-' {
+                c
+            } else {
+                '_'
+            }
+        })
+        .collect();
+    for number in 0..1000 {
+        let path = folder.join(format!("lahar-{stem}-{number:03}.png"));
+        let why =
+            |error: &dyn std::fmt::Display| format!("cannot write {}: {error}", path.display());
+        // A name that is taken stays as it is.
+        let file = match OpenOptions::new().write(true).create_new(true).open(&path) {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
+            Err(error) => return Err(why(&error)),
+            Ok(file) => file,
+        };
+        let [width, height] = image.size.map(|n| n as u32);
+        let mut encoder = png::Encoder::new(BufWriter::new(file), width, height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        let rgb: Vec<u8> = image
+            .pixels
+            .iter()
+            .flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()])
+            .collect();
+        let write = |error: png::EncodingError| why(&error);
+        let mut writer = encoder.write_header().map_err(write)?;
+        writer.write_image_data(&rgb).map_err(write)?;
+        writer.finish().map_err(write)?;
+        return Ok(std::path::absolute(&path).unwrap_or(path));
+    }
+    Err(format!(
+        "{} is full of lahar-{stem}-*.png",
+        folder.display()
+    ))
+}

@@ -1,0 +1,99 @@
+//! The real window: eframe around [`AppState`] and [`Solver`].
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Duration;
+
+use eframe::egui::{self, ColorImage};
+
+use crate::app_state::{AppState, Effect};
+use crate::solver::Solver;
+use crate::{colour, renderer, screenshot, view};
+
+/// What eframe runs.
+pub(crate) struct Window {
+    state: AppState,
+    solver: Solver,
+    screenshots: PathBuf,
+    pictures: (Sender<Arc<ColorImage>>, Receiver<Arc<ColorImage>>),
+}
+
+impl Window {
+    pub(crate) fn new(
+        context: &eframe::CreationContext<'_>,
+        state: AppState,
+        solver: Solver,
+        screenshots: PathBuf,
+    ) -> Self {
+        if let Some(render_state) = &context.wgpu_render_state {
+            renderer::install(render_state);
+        }
+        style(&context.egui_ctx);
+        Self {
+            state,
+            solver,
+            screenshots,
+            pictures: channel(),
+        }
+    }
+
+    fn carry_out(&mut self, context: &egui::Context) {
+        for effect in self.state.take_effects() {
+            match effect {
+                Effect::Order(order) => self.solver.order(order),
+                Effect::Close => context.send_viewport_cmd(egui::ViewportCommand::Close),
+                Effect::Screenshot => {
+                    let pictures = self.pictures.0.clone();
+                    let repaint = context.clone();
+                    context.request_screenshot(move |picture| {
+                        // Nobody to send to: the window is gone, and with it the wish.
+                        let _ = pictures.send(picture);
+                        repaint.request_repaint();
+                    });
+                }
+            }
+        }
+    }
+}
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        let context = ui.ctx().clone();
+        if let Some(shown) = self.solver.newest() {
+            self.state.receive(shown);
+        }
+        while let Ok(picture) = self.pictures.1.try_recv() {
+            let saved = screenshot::save(&self.screenshots, &self.state.scene, &picture);
+            let text = match saved {
+                Ok(path) => format!("Saved {}", path.display()),
+                Err(why) => why,
+            };
+            self.state.say(text, ui.input(|input| input.time));
+        }
+        view::window(&mut self.state, ui);
+        self.carry_out(&context);
+        // Moving: as fast as the display goes. Standing: often enough to see what a key did.
+        if self.state.is_moving() {
+            context.request_repaint();
+        } else {
+            context.request_repaint_after(Duration::from_millis(50));
+        }
+    }
+
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        colour::BACKGROUND.to_normalized_gamma_f32()
+    }
+}
+
+/// Dark, and in the scene's colours.
+pub(crate) fn style(context: &egui::Context) {
+    context.set_theme(egui::Theme::Dark);
+    context.style_mut_of(egui::Theme::Dark, |style| {
+        style.visuals.panel_fill = egui::Color32::from_rgb(0x16, 0x22, 0x2b);
+        style.visuals.window_fill = egui::Color32::from_rgb(0x16, 0x22, 0x2b);
+        style.visuals.selection.bg_fill = egui::Color32::from_rgb(0x06, 0x66, 0x70);
+        style.visuals.override_text_color = Some(egui::Color32::from_rgb(0xd7, 0xe3, 0xea));
+        style.spacing.slider_width = 90.0;
+    });
+}
