@@ -85,3 +85,35 @@ fn the_list_of_the_mpm88_regression_is_its_formula() {
     }
     assert_eq!(std::fs::read_to_string(path).unwrap(), list);
 }
+
+/// The published regression (taichi-dev/taichi, tests/python/test_mpm88.py, run in f64): means of
+/// the powers of x and 2y after 500 substeps.
+#[test]
+fn the_mpm88_regression_of_the_taichi_project_holds() {
+    let mut built = Scene::load("k7-mpm88-regression", &[])
+        .unwrap()
+        .build(Isa::Portable)
+        .unwrap();
+    built.simulation.advance_to(0.1).unwrap();
+    assert_eq!(built.simulation.substeps(), 500);
+    let snapshot = built.simulation.snapshot(&[lahar::Field::Position]);
+    let x = snapshot
+        .get(lahar::Field::Position)
+        .map(lahar::Data::to_f64)
+        .unwrap();
+    for (power, wanted) in [0.317227613, 0.158267514, 0.102240077, 0.0781082624]
+        .into_iter()
+        .enumerate()
+    {
+        let power = power as i32 + 1;
+        let sum: f64 = x
+            .chunks(2)
+            .map(|x| x[0].powi(power) + (2.0 * x[1]).powi(power))
+            .sum();
+        let moment = sum / x.len() as f64;
+        assert!(
+            (moment / wanted - 1.0).abs() < 1e-8,
+            "moment {power} is {moment}, {wanted} is published"
+        );
+    }
+}
