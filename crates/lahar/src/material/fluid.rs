@@ -15,6 +15,13 @@ use crate::math::{Matrix, Real, Scalar};
 /// otherwise never come back.
 pub const SMALLEST_JACOBIAN: f64 = 0.1;
 
+/// Fluid that has expanded this many times beyond where its tension is cut off is in free flight:
+/// what it expands by further is forgotten. A lone drop keeps its velocity gradient, so its J would
+/// grow like an exponential until no number can hold it (seen: 10⁶ within 0.1 s of a splash), and it
+/// would come back to the pool as if it had no volume. Nothing is stored beyond the cut-off of a
+/// fluid without tension, so that forgetting creates no energy.
+pub const TORN: f64 = 1.1;
+
 /// p(J), cut off where it would pull harder than `tension`, plus Newtonian viscosity:
 /// τ = −J p I + J (μ (∇v + ∇vᵀ − (2/d) tr ∇v I) + κ tr ∇v I).
 ///
@@ -103,6 +110,11 @@ impl Fluid {
         }
     }
 
+    /// The largest J − 1 that is remembered: [`TORN`] times the J at the cut-off.
+    fn largest_dilatation(&self) -> f64 {
+        (1.0 + self.cut_off()) * TORN - 1.0
+    }
+
     /// Pressure \[Pa\] (compression positive) at J = 1 + `jacobian_minus_one`.
     #[inline(always)]
     pub fn pressure<R: Real>(&self, jacobian_minus_one: R) -> R {
@@ -175,7 +187,8 @@ impl<const D: usize> ConstitutiveModel<D> for Fluid {
             JacobianUpdate::Determinant => increment.determinant_of_identity_plus_minus_one(),
         };
         Dilatation {
-            jacobian_minus_one: floored(e + change + e * change), // (7)
+            jacobian_minus_one: floored(e + change + e * change) // (7)
+                .min(e.lit(self.largest_dilatation())),
         }
     }
 

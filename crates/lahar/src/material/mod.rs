@@ -14,7 +14,7 @@ mod snow;
 mod strain;
 
 pub use corotated::Corotated;
-pub use fluid::{Eos, Fluid, JacobianUpdate, SMALLEST_JACOBIAN};
+pub use fluid::{Eos, Fluid, JacobianUpdate, SMALLEST_JACOBIAN, TORN};
 pub(crate) use law::{CHUNK, built_in, load_part, store_part};
 pub use law::{IsaToken, Law, ParticleState, law};
 pub use neo_hookean::{LOGARITHM_ENDS, NeoHookean};

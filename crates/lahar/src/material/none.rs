@@ -3,6 +3,9 @@
 use super::{ConstitutiveModel, Dilatation};
 use crate::math::{Matrix, Real};
 
+/// Dust does not resist: a lone particle's J would grow until no number can hold it.
+const LARGEST_DILATATION: f64 = 1e6;
+
 /// τ = 0. The change of volume is kept, since it is what a plot of dust is coloured by.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dust;
@@ -20,7 +23,9 @@ impl<const D: usize> ConstitutiveModel<D> for Dust {
         let e = strain.jacobian_minus_one;
         let change = increment.determinant_of_identity_plus_minus_one();
         Dilatation {
-            jacobian_minus_one: e + change + e * change, // (7)
+            jacobian_minus_one: (e + change + e * change) // (7)
+                .max(e.lit(-LARGEST_DILATATION))
+                .min(e.lit(LARGEST_DILATATION)),
         }
     }
 
