@@ -1,2 +1,61 @@
-//! placeholder
-fn main() {}
+//! The binary `lahar`: commands in, files, pictures and a window out.
+//!
+//! ```text
+//! words ─► args ─► plan, checked ─► run ─► DIR/ and a report
+//! ```
+//! Only this crate prints: reports on standard output, everything else on standard error.
+
+mod args;
+mod clock;
+mod completions;
+mod error;
+mod interrupt;
+mod list;
+mod plan;
+mod progress;
+mod run;
+mod schema;
+mod show;
+mod terminal;
+mod window;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Args, Command};
+use error::CliError;
+
+fn main() -> ExitCode {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        // Help and the version come this way too, with exit code 0.
+        Err(error) => {
+            drop(error.print());
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    let json = args.wants_json();
+    match execute(args) {
+        Ok(code) => code,
+        Err(error) => {
+            terminal::note(&error.text());
+            if json {
+                terminal::print_json(&error.json());
+            }
+            error.exit_code()
+        }
+    }
+}
+
+fn execute(args: Args) -> Result<ExitCode, CliError> {
+    match args.command {
+        None => window::open_or_run(None),
+        Some(Command::View(view)) => window::open(Some(&view.what)),
+        Some(Command::Run(run)) => run::run(plan::Plan::from_args(&run)?, run.json),
+        Some(Command::List(list)) => list::list(list.json),
+        Some(Command::Show(show)) => show::show(&show),
+        Some(Command::Schema) => schema::schema(),
+        Some(Command::Completions(completions)) => completions::completions(completions.shell),
+    }
+}

@@ -62,9 +62,16 @@ fn drop_a_block(viscosity: f64) -> Result<f64, Box<dyn std::error::Error>> {
     let mut setup = Setup::<2>::new(
         0.025,
         // The model named here is not used: the law given below takes its place.
-        vec![Material { name: "gel".into(), density: 1000.0, model: Model::Dust(Dust) }],
+        vec![Material {
+            name: "gel".into(),
+            density: 1000.0,
+            model: Model::Dust(Dust),
+        }],
     );
-    let walls = Sides::Walls { low: Contact::Sticky, high: Contact::Sticky };
+    let walls = Sides::Walls {
+        low: Contact::Sticky,
+        high: Contact::Sticky,
+    };
     setup.domain = Some(Domain {
         min: [0.0; 2],
         max: [1.0; 2],
@@ -74,11 +81,22 @@ fn drop_a_block(viscosity: f64) -> Result<f64, Box<dyn std::error::Error>> {
     setup.gravity = [0.0, -9.81];
     let spacing = 0.0125;
     let position = (0..24 * 24)
-        .map(|k| [0.35 + spacing * f64::from(k % 24), 0.01 + spacing * f64::from(k / 24)])
+        .map(|k| {
+            [
+                0.35 + spacing * f64::from(k % 24),
+                0.01 + spacing * f64::from(k / 24),
+            ]
+        })
         .collect();
-    let block =
-        ParticleBatch { position, volume: vec![spacing * spacing], ..ParticleBatch::default() };
-    let gel = KelvinVoigt { elastic: Corotated { lambda, mu }, viscosity };
+    let block = ParticleBatch {
+        position,
+        volume: vec![spacing * spacing],
+        ..ParticleBatch::default()
+    };
+    let gel = KelvinVoigt {
+        elastic: Corotated { lambda, mu },
+        viscosity,
+    };
     let mut simulation = Simulation::<f32, 2>::with_laws(setup, vec![law(gel)], &[block])?;
     simulation.advance_to(1.0)?;
     Ok(simulation.diagnostics().kinetic_energy)

@@ -78,10 +78,7 @@ pub(crate) fn measure<T: Lanes, const D: usize>(simulation: &mut Simulation<T, D
         let mut strain = vec![0.0; group.law.strain_columns()];
         for run in &group.runs {
             for p in run.rows() {
-                let cells = group.cells(run.block, p, simulation.scheme.offset());
-                let x = three(core::array::from_fn::<f64, D, _>(|axis| {
-                    simulation.origin[axis] + dx * cells[axis]
-                }));
+                let x = three(simulation.position(group, run.block, p));
                 let v = three(core::array::from_fn::<f64, D, _>(|axis| {
                     at(Layout::velocity(D) + axis, p)
                 }));

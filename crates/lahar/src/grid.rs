@@ -344,7 +344,9 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
                 self.rows(link, |block_at, tile_at, len| {
                     // Quad by quad: rows are too short for a call to the system's copy.
                     let copies = to[tile_at..tile_at + len].chunks_exact_mut(QUAD);
-                    for (copy, node) in copies.zip(from[block_at..block_at + len].chunks_exact(QUAD)) {
+                    for (copy, node) in
+                        copies.zip(from[block_at..block_at + len].chunks_exact(QUAD))
+                    {
                         copy.copy_from_slice(node);
                     }
                 });

@@ -21,6 +21,9 @@ pub trait BSpline: Copy + Send + Sync + 'static {
     const NODES: usize;
     /// `s − frac`, see the module's page \[cells\].
     const OFFSET: f64;
+    /// The node, counted from the base, that moments are taken about: the nearest in the middle, so
+    /// that their rounding is least.
+    const CENTRE: usize;
     /// D⁻¹ dx² of equation (3): Σ w r rᵀ = dx²/`INVERSE_INERTIA` I. Linear: none that holds
     /// anywhere, so infinite.
     const INVERSE_INERTIA: f64;
@@ -47,6 +50,7 @@ pub struct Cubic;
 impl BSpline for Linear {
     const NODES: usize = 2;
     const OFFSET: f64 = 0.0;
+    const CENTRE: usize = 0;
     const INVERSE_INERTIA: f64 = f64::INFINITY;
 
     #[inline(always)]
@@ -65,6 +69,7 @@ impl BSpline for Linear {
 impl BSpline for Quadratic {
     const NODES: usize = 3;
     const OFFSET: f64 = 0.5;
+    const CENTRE: usize = 1;
     const INVERSE_INERTIA: f64 = 4.0;
 
     #[inline(always)]
@@ -89,6 +94,7 @@ impl BSpline for Quadratic {
 impl BSpline for Cubic {
     const NODES: usize = 4;
     const OFFSET: f64 = 1.0;
+    const CENTRE: usize = 1;
     const INVERSE_INERTIA: f64 = 3.0;
 
     #[inline(always)]

@@ -475,6 +475,18 @@ impl<T: Lanes, const D: usize> Simulation<T, D> {
         Ok(())
     }
 
+    /// World position of a row of a block \[m\]; inside the domain on periodic axes.
+    pub(crate) fn position(&self, group: &Group<T, D>, block: [i32; D], row: usize) -> [f64; D] {
+        let cells = group.cells(block, row, self.scheme.offset());
+        core::array::from_fn(|axis| {
+            let inside = match self.walls.period[axis] {
+                Some(period) => cells[axis].rem_euclid(period as f64),
+                None => cells[axis],
+            };
+            self.origin[axis] + self.setup.dx * inside
+        })
+    }
+
     fn failure(
         &self,
         material: usize,
@@ -489,15 +501,13 @@ impl<T: Lanes, const D: usize> Simulation<T, D> {
             .iter()
             .find(|run| run.rows().contains(&row))
             .expect("every row is in a run");
-        let cells = group.cells(run.block, row, self.scheme.offset());
+        let position = self.position(group, run.block, row);
         Failure {
             what: "a particle's motion or strain is no longer a finite number".into(),
             particle: group.id[row],
             material: self.setup.materials[material].name.clone(),
             body: group.body.get(row),
-            position: three(core::array::from_fn::<_, D, _>(|axis| {
-                self.origin[axis] + cells[axis] * self.setup.dx
-            })),
+            position: three(position),
             count,
             substep: self.control.substeps + 1,
             time: self.control.time(),
@@ -564,7 +574,7 @@ fn check<const D: usize>(setup: &Setup<D>, laws: usize) -> Result<Walls<D>, Setu
         .domain
         .as_ref()
         .map_or_else(|| Ok(Walls::unbounded()), |domain| Walls::new(domain, dx))?;
-    let shortest = crate::grid::tile_edge::<D>(4) as i64;
+    let shortest = crate::kernel::STENCIL as i64;
     for axis in 0..D {
         if walls.period[axis].is_some_and(|period| period < shortest) {
             return setup_error(

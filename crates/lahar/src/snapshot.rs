@@ -64,11 +64,11 @@ fn column<T: Lanes, const D: usize>(
                 .collect(),
         ),
         Field::Position => Data::F64(fill(places, width, |place, out| {
-            let cells =
-                group(place).cells(place.block, place.row as usize, simulation.scheme.offset());
-            for axis in 0..D {
-                out[axis] = simulation.origin[axis] + simulation.setup.dx * cells[axis];
-            }
+            out.copy_from_slice(&simulation.position(
+                group(place),
+                place.block,
+                place.row as usize,
+            ));
         })),
         _ => {
             let values = fill(places, width, |place, out: &mut [T]| {

@@ -8,20 +8,42 @@ use lahar::particles::Field;
 use lahar::{Isa, Simulate, Simulation, Transfer};
 
 /// Bits on 1, 2, 3 and 8 threads, over enough sorts that particles change blocks and order.
-fn same_bits_on_any_number_of_threads<T: Lanes, const D: usize>(cells: usize, time: f64, transfer: Transfer) {
+fn same_bits_on_any_number_of_threads<T: Lanes, const D: usize>(
+    cells: usize,
+    time: f64,
+    transfer: Transfer,
+) {
     let (mut setup, batches) = brawl::<D>(cells);
     setup.transfer = transfer;
     let one = run_on::<T, D>(1, &setup, &batches, time);
-    assert!(one.phase_times().sorts >= 7, "only {} sorts", one.phase_times().sorts);
+    assert!(
+        one.phase_times().sorts >= 7,
+        "only {} sorts",
+        one.phase_times().sorts
+    );
     let start = Simulation::<T, D>::new(setup.clone(), &batches).expect("a good setup");
-    let moved = (start.snapshot(&[Field::Position]).columns, one.snapshot(&[Field::Position]).columns);
+    let moved = (
+        start.snapshot(&[Field::Position]).columns,
+        one.snapshot(&[Field::Position]).columns,
+    );
     let (before, after) = (moved.0[0].1.to_f64(), moved.1[0].1.to_f64());
     let block = setup.dx * 8.0;
-    let crossed = before.iter().zip(&after).filter(|(a, b)| (*a / block).floor() != (*b / block).floor()).count();
-    assert!(crossed > before.len() / 20, "only {crossed} of {} coordinates changed block", before.len());
+    let crossed = before
+        .iter()
+        .zip(&after)
+        .filter(|(a, b)| (*a / block).floor() != (*b / block).floor())
+        .count();
+    assert!(
+        crossed > before.len() / 20,
+        "only {crossed} of {} coordinates changed block",
+        before.len()
+    );
     for threads in [2, 3, 8] {
         let other = run_on::<T, D>(threads, &setup, &batches, time);
-        assert!(bits(&one.snapshot(ALL)) == bits(&other.snapshot(ALL)), "{threads} threads differ from one");
+        assert!(
+            bits(&one.snapshot(ALL)) == bits(&other.snapshot(ALL)),
+            "{threads} threads differ from one"
+        );
     }
 }
 
@@ -51,7 +73,9 @@ fn same_bits_elsewhere<T: Lanes, const D: usize>(shift_cells: f64) {
         .map(|mut batch| {
             for position in &mut batch.position {
                 // Rounded to a grid that both places can say exactly.
-                position.iter_mut().for_each(|x| *x = (*x * 1_048_576.0).round() / 1_048_576.0);
+                position
+                    .iter_mut()
+                    .for_each(|x| *x = (*x * 1_048_576.0).round() / 1_048_576.0);
             }
             batch
         })
@@ -67,11 +91,21 @@ fn same_bits_elsewhere<T: Lanes, const D: usize>(shift_cells: f64) {
             batch
         })
         .collect();
-    let fields =
-        &[Field::Velocity, Field::Affine, Field::Jacobian, Field::DeformationGradient, Field::Mass, Field::Id];
+    let fields = &[
+        Field::Velocity,
+        Field::Affine,
+        Field::Jacobian,
+        Field::DeformationGradient,
+        Field::Mass,
+        Field::Id,
+    ];
     let here = run_on::<T, D>(2, &setup, &moved, 0.25);
     let there = run_on::<T, D>(2, &setup, &shifted, 0.25);
-    assert!(here.phase_times().sorts >= 5, "only {} sorts", here.phase_times().sorts);
+    assert!(
+        here.phase_times().sorts >= 5,
+        "only {} sorts",
+        here.phase_times().sorts
+    );
     assert!(bits(&here.snapshot(fields)) == bits(&there.snapshot(fields)));
 }
 
@@ -87,9 +121,12 @@ fn a_shift_by_whole_blocks_does_not_change_bits() {
 fn looking_does_not_change_bits() {
     let (setup, batches) = brawl::<2>(48);
     let run = |look: bool| {
-        let mut simulation = Simulation::<f32, 2>::new(setup.clone(), &batches).expect("a good setup");
+        let mut simulation =
+            Simulation::<f32, 2>::new(setup.clone(), &batches).expect("a good setup");
         for frame in 1..=30 {
-            simulation.advance_to(f64::from(frame) / 100.0).expect("it runs");
+            simulation
+                .advance_to(f64::from(frame) / 100.0)
+                .expect("it runs");
             if look {
                 let _ = simulation.diagnostics();
                 let _ = simulation.snapshot(ALL);
@@ -110,7 +147,11 @@ fn instruction_sets_agree_closely() {
         setup.isa = isa;
         let other = run_on::<f64, 3>(2, &setup, &batches, 0.1);
         let positions = other.snapshot(&[Field::Position]).columns[0].1.to_f64();
-        let worst = reference.iter().zip(&positions).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let worst = reference
+            .iter()
+            .zip(&positions)
+            .map(|(a, b)| (a - b).abs())
+            .fold(0.0, f64::max);
         assert!(worst < 1e-9, "{}: {worst:e} m", isa.name());
     }
 }
@@ -124,7 +165,9 @@ fn distance_costs_no_memory() {
         for position in &mut drops[1].position {
             position[0] += apart * setup.dx;
         }
-        Simulation::<f32, 3>::new(setup, &drops).expect("a good setup").memory()
+        Simulation::<f32, 3>::new(setup, &drops)
+            .expect("a good setup")
+            .memory()
     };
     assert_eq!(memory(64.0), memory(1_000_000.0));
 }

@@ -4,7 +4,7 @@
 
 mod engine;
 
-use engine::{Engine, Numbers, Oracle, State, oracle_of, times};
+use engine::{Engine, Fast, Numbers, Oracle, State, oracle_of, times};
 use lahar::boundary::{Contact, Domain, Sides, WallStyle};
 use lahar::kernel::{BSpline, Cubic, Linear, Quadratic};
 use lahar::material::{
@@ -794,4 +794,9 @@ macro_rules! method {
     };
 }
 
+type Fast64<const D: usize> = Fast<f64, D>;
+type Fast32<const D: usize> = Fast<f32, D>;
+
 method!(oracle, Oracle);
+method!(fast_f64, Fast64);
+method!(fast_f32, Fast32);

@@ -47,22 +47,35 @@ const FILL: f32 = 0.94;
 impl Camera {
     /// From the front, somewhat from the right and above, so far away that the box fills the picture of the given
     /// width/height; `up` is the axis that points up.
-    pub fn showing((min, max): ([f64; 3], [f64; 3]), up: usize, aspect: f32) -> Self {
-        let (min, max) = (min.map(|x| x as f32), max.map(|x| x as f32));
-        let centre: V = core::array::from_fn(|i| 0.5 * (min[i] + max[i]));
-        let extent = dot(sub(max, min), sub(max, min)).sqrt();
+    pub fn showing(bounds: ([f64; 3], [f64; 3]), up: usize, aspect: f32) -> Self {
         let (right, front) = ground(up);
         let mut direction = [0.0; 3];
         direction = add_scaled(direction, front, ABOVE.cos() * SIDE.cos());
         direction = add_scaled(direction, right, ABOVE.cos() * SIDE.sin());
         direction[up] = ABOVE.sin();
+        Self::showing_from(bounds, up, aspect, direction, WIDE)
+    }
+
+    /// The same from another direction (towards the camera), and with another angle between the lower and the upper
+    /// edge of the picture \[rad\].
+    pub fn showing_from(
+        (min, max): ([f64; 3], [f64; 3]),
+        up: usize,
+        aspect: f32,
+        direction: [f32; 3],
+        angle: f32,
+    ) -> Self {
+        let direction = unit(direction);
+        let (min, max) = (min.map(|x| x as f32), max.map(|x| x as f32));
+        let centre: V = core::array::from_fn(|i| 0.5 * (min[i] + max[i]));
+        let extent = dot(sub(max, min), sub(max, min)).sqrt();
         let mut up_vector = [0.0; 3];
         up_vector[up] = 1.0;
         let mut camera = Self {
             eye: centre,
             target: centre,
             up: up_vector,
-            angle: WIDE,
+            angle,
         };
         let corners = corners(min, max);
         // Twice: shift to the middle of what is seen, then to the right distance.

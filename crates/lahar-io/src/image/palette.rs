@@ -66,6 +66,11 @@ pub(super) fn bright(colour: Colour) -> Colour {
     core::array::from_fn(|i| ((f32::from(colour[i]) * 0.35) + f32::from(towards[i]) * 0.65) as u8)
 }
 
+/// A colour some part of the way to white.
+pub(super) fn lighter(colour: Colour, part: f32) -> Colour {
+    colour.map(|c| (f32::from(c) + (255.0 - f32::from(c)) * part) as u8)
+}
+
 /// Viridis at eight equal steps (van der Walt and Smith 2015): lightness grows evenly, tellable by the colour-blind.
 const VIRIDIS: [Colour; 9] = [
     hex(0x44_0154),

@@ -5,17 +5,17 @@
 
 use std::ops::Range;
 
-use super::palette::{self, BACKGROUND, ToScreen};
+use super::palette::{self, ToScreen};
 use super::{Drawn, Picture, Scenery, Style};
 
-/// Reach h of a bump, in sizes of a particle: neighbours of a lattice still fill when pulled apart by half.
-const REACH: f32 = 1.45;
+/// Reach h of a bump, in sizes of a particle: gaps between neighbours up to two and a half sizes wide are filled.
+pub(super) const REACH: f32 = 2.0;
 
 /// Material is where bumps sum to this.
-const THRESHOLD: f32 = 0.45;
+pub(super) const THRESHOLD: f32 = 0.75;
 
 /// Half the width of the soft edge, in sums of bumps.
-const SOFT: f32 = 0.12;
+const SOFT: f32 = 0.1;
 
 /// Room around the domain, in parts of its larger side.
 const MARGIN: f64 = 0.025;
@@ -32,6 +32,7 @@ pub(super) struct Plane {
     scale: f64,
     /// The walls as left, right, bottom, top \[m\].
     walls: Option<[f64; 4]>,
+    background: palette::Colour,
 }
 
 impl Plane {
@@ -49,6 +50,7 @@ impl Plane {
             corner: [min[0] - room, max[1] + room],
             scale: pixels * f64::from(style.samples),
             walls: scenery.walls.then_some([min[0], max[0], min[1], max[1]]),
+            background: scenery.background,
         }
     }
 
@@ -90,7 +92,7 @@ impl Plane {
         }
 
         let screen = ToScreen::new();
-        let background = palette::linear(BACKGROUND);
+        let background = palette::linear(self.background);
         let share = 1.0 / (self.samples * self.samples) as f32;
         let inside = self.inside();
         let mut light = vec![background; self.width * self.height];
@@ -145,7 +147,7 @@ impl Plane {
             return;
         }
         let [columns, rows] = self.inside();
-        let line = palette::linear(WALL);
+        let line = palette::mix(palette::linear(self.background), [0.5; 3], WALL);
         let mut dot = |row: usize, column: usize| {
             if row < self.height && column < self.width {
                 light[row * self.width + column] = line;
@@ -166,8 +168,8 @@ impl Plane {
     }
 }
 
-/// Walls: the background, lighter.
-const WALL: palette::Colour = [0x4A, 0x6B, 0x7E];
+/// How far walls go from the background to grey.
+const WALL: f32 = 0.25;
 
 /// Samples within `reach` of `centre`, of `count`; none for what is outside or not a number.
 fn span(centre: f32, reach: f32, count: usize) -> Option<(usize, usize)> {

@@ -5,12 +5,18 @@
 //! ```
 //! The smoothed depth makes a dense crowd of balls one surface, while lone ones stay balls: smoothing stops at jumps.
 
+use core::f32::consts::TAU;
+
 use super::camera::{self, Camera, add_scaled, cross, dot, sub, unit};
-use super::palette::{self, BACKGROUND, ToScreen};
+use super::palette::{self, ToScreen};
 use super::{Drawn, Picture, Scenery, Style};
 
 /// Radius of a ball, in sizes of a particle.
-const RADIUS: f32 = 0.72;
+const RADIUS: f32 = 0.9;
+
+/// How far depth is smoothed, and what is a jump of depth, in radii.
+const SMOOTHING: f32 = 1.9;
+const JUMP: f32 = 2.0;
 
 /// Samples a side of the map of what the light sees.
 const SHADOW: usize = 512;
@@ -34,6 +40,7 @@ pub(super) struct Space {
     walls: bool,
     /// Towards the lamp.
     lamp: [f32; 3],
+    background: palette::Colour,
 }
 
 /// What each sample shows.
@@ -62,6 +69,7 @@ impl Space {
             up: scenery.up,
             walls: scenery.walls,
             lamp: unit(lamp),
+            background: scenery.background,
         }
     }
 
@@ -121,7 +129,11 @@ impl Space {
             let away = (place - place.round()).abs() * step;
             line = line.max((1.0 - away / width).clamp(0.0, 1.0));
         }
-        palette::mix(palette::linear(FLOOR), palette::linear(FLOOR_LINE), line)
+        palette::mix(
+            palette::linear(palette::lighter(self.background, 0.09)),
+            palette::linear(palette::lighter(self.background, 0.2)),
+            line,
+        )
     }
 
     /// The box's twelve edges, faint, hidden by what is before them.
@@ -180,10 +192,7 @@ impl Space {
     }
 }
 
-const FLOOR: palette::Colour = [0x1D, 0x42, 0x57];
-const FLOOR_LINE: palette::Colour = [0x33, 0x5C, 0x72];
 const EDGE: palette::Colour = [0x6E, 0x93, 0xA6];
-const SKY: palette::Colour = [0x1A, 0x40, 0x55];
 
 /// 1, 2 or 5 times a power of ten, near `length`.
 fn nice(length: f32) -> f32 {
@@ -211,6 +220,8 @@ struct Eye {
     height: usize,
     /// Samples a unit of tangent.
     focal: f32,
+    /// Where to look for what hides the sky, by the sample's place in a pattern: within a unit circle.
+    looks: Box<[[[f32; 2]; DIRECTIONS]; 16]>,
 }
 
 impl Eye {
@@ -224,6 +235,14 @@ impl Eye {
             width,
             height,
             focal: 0.5 * height as f32 / (0.5 * camera.angle).tan(),
+            looks: Box::new(core::array::from_fn(|turn| {
+                core::array::from_fn(|i| {
+                    const GOLDEN_ANGLE: f32 = 2.399_963;
+                    let angle = turn as f32 * (TAU / 16.0) + i as f32 * GOLDEN_ANGLE;
+                    let away = (i as f32 + 0.7) / DIRECTIONS as f32;
+                    [away * angle.cos(), away * angle.sin()]
+                })
+            })),
         }
     }
 
@@ -288,9 +307,18 @@ impl Eye {
         Seen { depth, particle }
     }
 
-    /// Depth, smoothed over about a ball, along rows and columns in turn; not across jumps.
+    /// Depth, smoothed over about two balls, along rows and columns in turn. What is much nearer does not pull, and
+    /// what is much farther pulls no more than what is a little farther: edges stay where they are.
     fn smooth(&self, seen: &mut Seen, particles: &Drawn) {
         let (w, h) = (self.width, self.height);
+        let radius: Vec<f32> = seen
+            .particle
+            .iter()
+            .map(|&particle| match particle {
+                NOTHING => 0.0,
+                particle => RADIUS * particles.size[particle as usize],
+            })
+            .collect();
         let mut other = seen.depth.clone();
         for pass in 0..4 {
             let across = pass % 2 == 0;
@@ -301,28 +329,25 @@ impl Eye {
                     if seen.particle[at] == NOTHING {
                         continue;
                     }
-                    let radius = RADIUS * particles.size[seen.particle[at] as usize];
-                    let jump = 2.4 * radius;
-                    let reach = (1.3 * radius * self.focal / centre)
+                    let jump = JUMP * radius[at];
+                    let reach = (SMOOTHING * radius[at] * self.focal / centre)
                         .round()
-                        .clamp(1.0, 12.0) as usize;
+                        .clamp(1.0, 16.0) as usize;
                     let (place, length, stride) = if across { (column, w, 1) } else { (row, h, w) };
                     let side = reach.min(place).min(length - 1 - place);
                     let falloff = 1.0 / ((reach * reach) as f32 * 1.3);
-                    let (mut total, mut weight) = (centre, 1.0);
+                    let (mut total, mut weight) = (0.0, 1.0);
                     for step in 1..=side {
-                        let (a, b) = (
-                            seen.depth[at - step * stride],
-                            seen.depth[at + step * stride],
-                        );
-                        // In pairs, so that slopes stay.
-                        if (a - centre).abs() < jump && (b - centre).abs() < jump {
+                        let a = seen.depth[at - step * stride] - centre;
+                        let b = seen.depth[at + step * stride] - centre;
+                        // In pairs, so that slopes stay; infinite where there is nothing.
+                        if a.min(b) > -jump && a.max(b) < f32::INFINITY {
                             let share = 1.0 - (step * step) as f32 * falloff;
-                            total += share * (a + b);
+                            total += share * (a.min(jump) + b.min(jump));
                             weight += 2.0 * share;
                         }
                     }
-                    other[at] = total / weight;
+                    other[at] = centre + total / weight;
                 }
             }
             core::mem::swap(&mut seen.depth, &mut other);
@@ -383,13 +408,10 @@ impl Eye {
         let (column, row) = ((at % self.width) as f32, (at / self.width) as f32);
         let samples = (reach * self.focal / depth[at]).clamp(3.0, 60.0);
         // Turned by a fixed pattern over 4 × 4 samples, which the mean of samples mixes.
-        let turn = ((at % self.width % 4) * 4 + at / self.width % 4) as f32
-            * (core::f32::consts::TAU / 16.0);
+        let looks = &self.looks[(at % self.width % 4) * 4 + at / self.width % 4];
         let mut sum = 0.0;
-        for i in 0..DIRECTIONS {
-            let angle = turn + i as f32 * 2.399_963; // the golden angle
-            let away = samples * ((i as f32 + 0.7) / DIRECTIONS as f32);
-            let (c, r) = (column + away * angle.cos(), row + away * angle.sin());
+        for look in looks {
+            let (c, r) = (column + samples * look[0], row + samples * look[1]);
             if c < 0.0 || r < 0.0 || c >= self.width as f32 || r >= self.height as f32 {
                 continue;
             }
@@ -412,8 +434,8 @@ impl Eye {
         particles: &Drawn,
         shadow: &Shadow,
     ) -> Vec<[f32; 3]> {
-        let far = palette::linear(BACKGROUND);
-        let sky = palette::linear(SKY);
+        let far = palette::linear(space.background);
+        let sky = palette::linear(palette::lighter(space.background, 0.07));
         let diagonal = dot(sub(space.max, space.min), sub(space.max, space.min)).sqrt();
         let nearest = dot(sub(space.camera.target, self.from), self.forward) - 0.5 * diagonal;
         let mut light = Vec::with_capacity(seen.depth.len());
@@ -459,7 +481,7 @@ impl Eye {
 }
 
 /// Looks around a sample for what hides the sky.
-const DIRECTIONS: usize = 10;
+const DIRECTIONS: usize = 9;
 
 /// What the lamp sees, from far away: the height along its direction of the first thing it meets.
 struct Shadow {
@@ -540,13 +562,13 @@ impl Shadow {
     fn at(&self, x: [f32; 3], slack: f32) -> f32 {
         let [u, v, height] = self.place(x);
         let mut hidden = 0.0;
-        for row in -2..=2_i32 {
-            for column in -2..=2_i32 {
-                let (c, r) = (u + 1.2 * column as f32, v + 1.2 * row as f32);
+        for row in -1..=1_i32 {
+            for column in -1..=1_i32 {
+                let (c, r) = (u + 1.6 * column as f32, v + 1.6 * row as f32);
                 if c >= 0.0 && r >= 0.0 && c < SHADOW as f32 && r < SHADOW as f32 {
                     let above = self.height[r as usize * SHADOW + c as usize] - height;
                     if above > slack {
-                        hidden += 1.0 / 25.0;
+                        hidden += 1.0 / 9.0;
                     }
                 }
             }

@@ -24,7 +24,7 @@ pub use diagnostics::DiagnosticsFile;
 pub use folder::RunFolder;
 pub use frames::{frame_name, write_frame};
 pub use record::{PhaseSeconds, Record, Status};
-pub use writer::{Film, Plan, Writer, Written, film_pace};
+pub use writer::{Film, Pace, Pictures, Plan, Writer, Written, film_pace};
 
 /// A file or folder that could not be made or written.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -21,17 +21,31 @@ pub struct Plan {
     pub dimension: usize,
     /// Particles of every frame as `.npz`, if wanted.
     pub npz: Option<Compression>,
-    /// Draws frames; needed for pictures and film.
-    pub renderer: Option<Renderer>,
-    /// Whether every frame's picture is kept as PNG.
-    pub images: bool,
+    /// Pictures of every frame as PNG, if wanted.
+    pub pictures: Option<Pictures>,
     /// The film, if wanted.
     pub film: Option<Film>,
 }
 
+/// Pictures kept as PNG.
+pub struct Pictures {
+    /// Draws them.
+    pub renderer: Renderer,
+    /// Every so many frames.
+    pub every: u64,
+}
+
+/// A film.
+pub struct Film {
+    /// Draws it.
+    pub renderer: Renderer,
+    /// Which frames, and how fast.
+    pub pace: Pace,
+}
+
 /// Which frames a film shows, and how fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Film {
+pub struct Pace {
     /// Every so many frames.
     pub every: u64,
     /// Pictures a second.
@@ -46,9 +60,9 @@ const SHORT_FILM: f64 = 2.0;
 
 /// A film of `frames` frames at `frame_rate` a simulated second: in real time, skipping frames over 30 a second; runs
 /// that would flash by are slowed down to two seconds or more.
-pub fn film_pace(frame_rate: f64, frames: u64) -> Film {
+pub fn film_pace(frame_rate: f64, frames: u64) -> Pace {
     let every = (frame_rate / FILM_RATE).ceil().max(1.0);
-    let real_time = Film {
+    let real_time = Pace {
         every: every as u64,
         rate: frame_rate / every,
     };
@@ -56,7 +70,7 @@ pub fn film_pace(frame_rate: f64, frames: u64) -> Film {
         return real_time;
     }
     let every = (frames as f64 / (SHORT_FILM * FILM_RATE)).floor().max(1.0);
-    Film {
+    Pace {
         every: every as u64,
         rate: (frames as f64 / every / SHORT_FILM).clamp(5.0, FILM_RATE),
     }
@@ -65,8 +79,10 @@ pub fn film_pace(frame_rate: f64, frames: u64) -> Film {
 /// What a writer has written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Written {
-    /// Frames, pictures or not.
+    /// Frames, files of particles and pictures or not.
     pub frames: u64,
+    /// Files of particles.
+    pub particles: u64,
     /// Pictures kept as PNG.
     pub images: u64,
     /// Whether there is a film.
@@ -75,7 +91,7 @@ pub struct Written {
 
 struct Job {
     index: u64,
-    snapshot: Snapshot,
+    snapshot: Option<Snapshot>,
     diagnostics: Diagnostics,
 }
 
@@ -95,7 +111,7 @@ impl Writer {
         let diagnostics = DiagnosticsFile::create(&folder.diagnostics(), plan.dimension)?;
         for (wanted, path) in [
             (plan.npz.is_some(), folder.frames()),
-            (plan.images, folder.images()),
+            (plan.pictures.is_some(), folder.images()),
         ] {
             if wanted {
                 fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
@@ -119,14 +135,14 @@ impl Writer {
         })
     }
 
-    /// Hands over a frame; waits if too many are under way.
+    /// Hands over a frame; waits if too many are under way. Without a snapshot it is a row of the csv only.
     ///
     /// # Errors
     /// What went wrong with an earlier frame.
     pub fn frame(
         &mut self,
         index: u64,
-        snapshot: Snapshot,
+        snapshot: Option<Snapshot>,
         diagnostics: Diagnostics,
     ) -> Result<(), OutputError> {
         let job = Job {
@@ -183,7 +199,10 @@ struct Work {
 impl Work {
     fn new(plan: Plan, diagnostics: DiagnosticsFile) -> Self {
         Self {
-            film: plan.film.map(|film| image::Film::new(film.rate)),
+            film: plan
+                .film
+                .as_ref()
+                .map(|film| image::Film::new(film.pace.rate)),
             plan,
             diagnostics,
             written: Written::default(),
@@ -191,37 +210,37 @@ impl Work {
     }
 
     fn frame(&mut self, job: &Job) -> Result<(), OutputError> {
-        let folder = &self.plan.folder;
-        if let Some(compression) = self.plan.npz {
-            let path = folder.frames().join(frame_name(job.index, "npz"));
-            write_frame(&path, &job.snapshot, compression)?;
-        }
-        let filmed = self
-            .plan
-            .film
-            .is_some_and(|film| job.index.is_multiple_of(film.every));
-        if let Some(renderer) = self
-            .plan
-            .renderer
-            .as_ref()
-            .filter(|_| filmed || self.plan.images)
-        {
-            let picture = renderer.render(&job.snapshot);
-            if self.plan.images {
-                let path = folder.images().join(frame_name(job.index, "png"));
-                write_whole(&path, false, |mut writer| {
-                    picture.write_png(&mut writer)?;
-                    Ok(writer)
-                })?;
-                self.written.images += 1;
-            }
-            if let Some(film) = self.film.as_mut().filter(|_| filmed) {
-                film.push(&picture)
-                    .map_err(OutputError::at(&folder.video()))?;
-            }
+        if let Some(snapshot) = &job.snapshot {
+            self.files(job.index, snapshot)?;
         }
         self.diagnostics.push(&job.diagnostics)?;
         self.written.frames += 1;
+        Ok(())
+    }
+
+    fn files(&mut self, index: u64, snapshot: &Snapshot) -> Result<(), OutputError> {
+        let folder = &self.plan.folder;
+        if let Some(compression) = self.plan.npz {
+            let path = folder.frames().join(frame_name(index, "npz"));
+            write_frame(&path, snapshot, compression)?;
+            self.written.particles += 1;
+        }
+        let due = |every: u64| index.is_multiple_of(every.max(1));
+        if let Some(pictures) = self.plan.pictures.as_ref().filter(|p| due(p.every)) {
+            let picture = pictures.renderer.render(snapshot);
+            let path = folder.images().join(frame_name(index, "png"));
+            write_whole(&path, false, |mut writer| {
+                picture.write_png(&mut writer)?;
+                Ok(writer)
+            })?;
+            self.written.images += 1;
+        }
+        if let (Some(plan), Some(film)) = (&self.plan.film, &mut self.film)
+            && due(plan.pace.every)
+        {
+            film.push(&plan.renderer.render(snapshot))
+                .map_err(OutputError::at(&folder.video()))?;
+        }
         Ok(())
     }
 
@@ -240,7 +259,7 @@ impl Work {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::{Scenery, Style, model_colours};
+    use crate::image::{BACKGROUND, Scenery, Style, model_colours};
     use lahar::{Data, Field};
 
     fn plan(folder: RunFolder) -> Plan {
@@ -251,35 +270,42 @@ mod tests {
             up: 1,
             dx: 0.1,
             speed: 1.0,
+            background: BACKGROUND,
             colours: model_colours(&["fluid"]),
         };
+        let renderer = Renderer::new(
+            scenery,
+            Style {
+                width: 64,
+                height: 64,
+                ..Style::default()
+            },
+        );
         Plan {
             folder,
             dimension: 2,
             npz: Some(Compression::Stored),
-            renderer: Some(Renderer::new(
-                scenery,
-                Style {
-                    width: 64,
-                    height: 64,
-                    ..Style::default()
-                },
-            )),
-            images: true,
+            pictures: Some(Pictures {
+                renderer: renderer.clone(),
+                every: 1,
+            }),
             film: Some(Film {
-                every: 2,
-                rate: 25.0,
+                renderer,
+                pace: Pace {
+                    every: 2,
+                    rate: 25.0,
+                },
             }),
         }
     }
 
-    fn snapshot(x: f64) -> Snapshot {
-        Snapshot {
+    fn snapshot(x: f64) -> Option<Snapshot> {
+        Some(Snapshot {
             time: x,
             dimension: 2,
             count: 1,
             columns: vec![(Field::Position, Data::F64(vec![x, 0.5]))],
-        }
+        })
     }
 
     #[test]
@@ -305,6 +331,7 @@ mod tests {
             written,
             Written {
                 frames: 9,
+                particles: 9,
                 images: 9,
                 film: true
             }
@@ -342,28 +369,28 @@ mod tests {
     fn films_play_in_real_time_unless_that_is_a_flash() {
         assert_eq!(
             film_pace(60.0, 180),
-            Film {
+            Pace {
                 every: 2,
                 rate: 30.0
             }
         );
         assert_eq!(
             film_pace(25.0, 100),
-            Film {
+            Pace {
                 every: 1,
                 rate: 25.0
             }
         );
         assert_eq!(
             film_pace(1000.0, 100),
-            Film {
+            Pace {
                 every: 1,
                 rate: 30.0
             }
         );
         assert_eq!(
             film_pace(1000.0, 600),
-            Film {
+            Pace {
                 every: 10,
                 rate: 30.0
             }

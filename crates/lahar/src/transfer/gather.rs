@@ -261,8 +261,8 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
         for axis in 0..D {
             gradient.0[axis] =
                 load_quads::<S, T, D>(simd, &stage.impulse[1 + axis], p) * zero.lit(1.0 / dx);
-            // B = Σ w v rᵀ = dx (Σ w v n − v s), C = B D⁻¹
-            let s = u[axis] - u[axis].floor() + zero.lit(K::OFFSET);
+            // B = Σ w v rᵀ = dx (Σ w v n − v s), n and s from the centre; C = B D⁻¹
+            let s = u[axis] - u[axis].floor() + zero.lit(K::OFFSET - K::CENTRE as f64);
             let moment = load_quads::<S, T, D>(simd, &stage.momentum[1 + axis], p);
             c.0[axis] = (moment - v * s) * zero.lit(K::INVERSE_INERTIA / dx); // (6), (3)
         }

@@ -10,7 +10,7 @@
 //! and mass rides along as the fourth number of P₀. The four nodes of a row, k = 0 .. 3, lie side by
 //! side in the tile: one register in f32 with AVX-512. With w_k multiplied in first, a row costs one
 //! fused multiply-add. Likewise G2P sums rows by j, then by i, and the row itself once at the end,
-//! keeping Σ, Σ·i, Σ·j and Σ·k. In 2D a row is (i) and lies along j.
+//! keeping Σ, Σ·i, Σ·j and Σ·k, with i, j, k counted from the stencil's middle node. In 2D a row is (i) and lies along j.
 //!
 //! `reference` does the same sums node by node; tests hold the two together.
 
@@ -159,7 +159,22 @@ fn scatter_classic<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     }
 }
 
-/// Σ_j and Σ_j j of a plane's rows, weighted; in 2D a plane is a single row.
+/// `sum + (index − centre) part`, for the small whole numbers that a stencil has.
+#[inline(always)]
+fn add_moment<S: Simd, T: Lanes, K: BSpline>(
+    simd: S,
+    sum: T::Row<S>,
+    index: usize,
+    part: T::Row<S>,
+) -> T::Row<S> {
+    match index as isize - K::CENTRE as isize {
+        0 => sum,
+        1 => sum + part,
+        arm => T::Row::splat(simd, T::from_f64(arm as f64)).mul_add(part, sum),
+    }
+}
+
+/// Σ_j and Σ_j (j − centre) of a plane's rows, weighted; in 2D a plane is a single row.
 #[inline(always)]
 fn plane_sums<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
@@ -167,20 +182,16 @@ fn plane_sums<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     tile_edge: usize,
     weights: &[T],
 ) -> (T::Row<S>, T::Row<S>) {
+    let zero = T::Row::splat(simd, T::default());
     if D == 2 {
-        return (T::Row::load(simd, plane), T::Row::splat(simd, T::default()));
+        return (T::Row::load(simd, plane), zero);
     }
-    let mut sum = T::Row::splat(simd, weights[0]) * T::Row::load(simd, plane);
-    let mut by_j = T::Row::splat(simd, T::default());
-    for j in 1..K::NODES {
+    let (mut sum, mut by_j) = (zero, zero);
+    for j in 0..K::NODES {
         let part =
             T::Row::splat(simd, weights[j]) * T::Row::load(simd, &plane[j * tile_edge * 4..]);
-        sum = sum + part;
-        by_j = if j == 1 {
-            part
-        } else {
-            T::Row::splat(simd, T::from_f64(j as f64)).mul_add(part, by_j)
-        };
+        sum = if j == 0 { part } else { sum + part };
+        by_j = add_moment::<S, T, K>(simd, by_j, j, part);
     }
     (sum, by_j)
 }
@@ -201,7 +212,7 @@ fn plane<T, const D: usize, K: BSpline>(
     &tile[at * 4..][..rows * tile_edge * 4 + 16]
 }
 
-/// (5), (6) for particle `p`: Σ w v to `momentum[0]`, Σ w v n_a to `momentum[1 + a]`; if `SPLIT`,
+/// (5), (6) for particle `p`: Σ w v to `momentum[0]`, Σ w v (n_a − centre) to `momentum[1 + a]`; if `SPLIT`,
 /// Σ w Δv to `impulse[0]`; if `CLASSIC`, dx Σ v ∂_a w to `impulse[1 + a]`.
 #[inline(always)]
 pub(super) fn gather<
@@ -237,9 +248,7 @@ pub(super) fn gather<
         );
         let part = w_i * row;
         sum = sum + part;
-        if i > 0 {
-            by_i = T::Row::splat(simd, T::from_f64(i as f64)).mul_add(part, by_i);
-        }
+        by_i = add_moment::<S, T, K>(simd, by_i, i, part);
         if D == 3 {
             by_j = w_i.mul_add(row_by_j, by_j);
         }
@@ -250,7 +259,8 @@ pub(super) fn gather<
     if D == 3 {
         (by_j * w_row).fold(&mut stage.momentum[2][q..]);
     }
-    (sum * k).fold(&mut stage.momentum[D][q..]);
+    (sum * (k + T::Row::splat(simd, T::from_f64(-(K::CENTRE as f64)))))
+        .fold(&mut stage.momentum[D][q..]);
 
     if SPLIT {
         let change = &tile[tile_plane..];

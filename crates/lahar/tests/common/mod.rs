@@ -4,7 +4,8 @@
 use lahar::material::{Corotated, Dust, Eos, Fluid, JacobianUpdate, NeoHookean, Snow, lame};
 use lahar::particles::{Data, Field, Snapshot};
 use lahar::{
-    Contact, Domain, Material, Model, ParticleBatch, Setup, Sides, Simulate, Simulation, TimeStep, WallStyle,
+    Contact, Domain, Material, Model, ParticleBatch, Setup, Sides, Simulate, Simulation, TimeStep,
+    WallStyle,
 };
 
 /// A small generator of even numbers, the same everywhere (splitmix64).
@@ -26,7 +27,11 @@ impl Random {
 /// One of each model, soft enough that waves and particles are of like speed.
 pub(crate) fn one_of_each() -> Vec<Material> {
     let (lambda, mu) = lame(2e3, 0.3);
-    let material = |name: &str, density, model| Material { name: name.into(), density, model };
+    let material = |name: &str, density, model| Material {
+        name: name.into(),
+        density,
+        model,
+    };
     vec![
         material(
             "water",
@@ -41,8 +46,20 @@ pub(crate) fn one_of_each() -> Vec<Material> {
             }),
         ),
         material("jelly", 500.0, Model::Corotated(Corotated { lambda, mu })),
-        material("rubber", 800.0, Model::NeoHookean(NeoHookean { lambda, mu })),
-        material("snow", 400.0, Model::Snow(Snow { lambda, mu, ..Snow::new(1.4e5, 0.2) })),
+        material(
+            "rubber",
+            800.0,
+            Model::NeoHookean(NeoHookean { lambda, mu }),
+        ),
+        material(
+            "snow",
+            400.0,
+            Model::Snow(Snow {
+                lambda,
+                mu,
+                ..Snow::new(1.4e5, 0.2)
+            }),
+        ),
         material("dust", 100.0, Model::Dust(Dust)),
     ]
 }
@@ -67,7 +84,9 @@ pub(crate) fn ball<const D: usize>(
                 centre[a] + offset[a] + random.between(-0.2, 0.2) * spacing
             }));
         }
-        let Some(axis) = (0..D).rev().find(|&a| index[a] < n) else { break };
+        let Some(axis) = (0..D).rev().find(|&a| index[a] < n) else {
+            break;
+        };
         index[axis] += 1;
         index[axis + 1..].fill(-n);
     }
@@ -100,11 +119,21 @@ pub(crate) fn brawl<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatc
         })
         .collect();
     let mut setup = Setup::new(dx, materials);
-    let wall = Sides::Walls { low: Contact::Separate { friction: 0.1 }, high: Contact::Separate { friction: 0.0 } };
-    setup.domain =
-        Some(Domain { min: [0.0; D], max: [size; D], sides: [wall; D], style: WallStyle::Plane });
+    let wall = Sides::Walls {
+        low: Contact::Separate { friction: 0.1 },
+        high: Contact::Separate { friction: 0.0 },
+    };
+    setup.domain = Some(Domain {
+        min: [0.0; D],
+        max: [size; D],
+        sides: [wall; D],
+        style: WallStyle::Plane,
+    });
     setup.gravity[1] = -9.81;
-    setup.time_step = TimeStep::Automatic { cfl: 0.3, longest: f64::INFINITY };
+    setup.time_step = TimeStep::Automatic {
+        cfl: 0.3,
+        longest: f64::INFINITY,
+    };
     (setup, batches)
 }
 
@@ -142,7 +171,10 @@ pub(crate) fn run_on<T: lahar::math::Lanes, const D: usize>(
     batches: &[ParticleBatch<D>],
     time: f64,
 ) -> Simulation<T, D> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build()
+        .expect("a pool");
     pool.install(|| {
         let mut simulation = Simulation::<T, D>::new(setup.clone(), batches).expect("a good setup");
         simulation.set_clock(|| 0.0);

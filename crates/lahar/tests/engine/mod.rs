@@ -3,9 +3,10 @@
 //! An engine only steps and shows its particles. Whatever is summed over them (energies, momenta)
 //! is summed by the oracle, from what the engine shows.
 
-use lahar::math::{Matrix, Vector};
+use lahar::math::{Lanes, Matrix, Vector};
+use lahar::particles::Field;
 use lahar::reference::Reference;
-use lahar::{Deformation, ParticleBatch, Setup, TimeStep};
+use lahar::{Deformation, ParticleBatch, Setup, Simulate, Simulation, TimeStep};
 
 /// A particle as an engine shows it.
 #[derive(Clone, Debug)]
@@ -143,4 +144,62 @@ impl Numbers {
 /// `f` as the vector that formulas use.
 pub(crate) fn times<const D: usize>(matrix: [[f64; D]; D], vector: [f64; D]) -> [f64; D] {
     matrix.map(|row| Vector(row).dot(Vector(vector)))
+}
+
+/// [`lahar::Simulation`] as an engine.
+pub(crate) struct Fast<T: Lanes, const D: usize>(Simulation<T, D>);
+
+impl<T: Lanes, const D: usize> Engine<D> for Fast<T, D> {
+    const EPSILON: f64 = if size_of::<T>() == 8 {
+        f64::EPSILON
+    } else {
+        f32::EPSILON as f64
+    };
+
+    fn new(setup: &Setup<D>, batches: &[ParticleBatch<D>]) -> Self {
+        Self(Simulation::new(setup.clone(), batches).expect("the check's scene is sound"))
+    }
+
+    fn substep(&mut self) {
+        Simulate::substep(&mut self.0).expect("the check's scene runs");
+    }
+
+    fn particles(&self) -> Vec<State<D>> {
+        let fields = [
+            Field::Id,
+            Field::Material,
+            Field::Body,
+            Field::Mass,
+            Field::Volume0,
+            Field::Position,
+            Field::Velocity,
+            Field::Affine,
+            Field::DeformationGradient,
+            Field::Jacobian,
+        ];
+        let snapshot = self.0.snapshot(&fields);
+        let columns: Vec<Vec<f64>> = snapshot
+            .columns
+            .iter()
+            .map(|(_, data)| data.to_f64())
+            .collect();
+        let vector = |c: usize, p: usize| core::array::from_fn(|i| columns[c][p * D + i]);
+        let matrix = |c: usize, p: usize| {
+            core::array::from_fn(|i| core::array::from_fn(|j| columns[c][(p * D + i) * D + j]))
+        };
+        (0..snapshot.count)
+            .map(|p| State {
+                id: columns[0][p] as u32,
+                material: columns[1][p] as usize,
+                body: columns[2][p] as u32,
+                mass: columns[3][p],
+                volume0: columns[4][p],
+                position: vector(5, p),
+                velocity: vector(6, p),
+                affine: matrix(7, p),
+                deformation_gradient: matrix(8, p),
+                jacobian_minus_one: columns[9][p] - 1.0,
+            })
+            .collect()
+    }
 }

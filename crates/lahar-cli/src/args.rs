@@ -1,0 +1,197 @@
+//! What may be written on the command line.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+use lahar::Isa;
+
+/// Fluids, and the solids they meet, simulated by the Moving Least Squares Material Point Method.
+///
+/// Without a command a window opens on the default scene; without a display the same scene runs and leaves a film.
+#[derive(Debug, Parser)]
+#[command(name = "lahar", version, max_term_width = 100)]
+pub(crate) struct Args {
+    /// What to do; nothing: open the window on the default scene.
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+impl Args {
+    /// Whether standard output is to hold one JSON document.
+    pub(crate) fn wants_json(&self) -> bool {
+        match &self.command {
+            Some(Command::Run(run)) => run.json,
+            Some(Command::List(list)) => list.json,
+            Some(Command::Show(show)) => show.json,
+            _ => false,
+        }
+    }
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Open the window on a scene, or replay a finished run
+    View(View),
+    /// Run a scene without a window and write what it comes to
+    Run(Run),
+    /// List the built-in scenes
+    List(List),
+    /// Show what a scene comes to: particles, nodes, memory, sound speed, time step and what limits it
+    Show(Show),
+    /// Print the JSON schema of scene files, for editors
+    Schema,
+    /// Print completions for a shell
+    Completions(Completions),
+}
+
+/// Options of `view`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct View {
+    /// A built-in scene's name, a scene file, or a run's folder
+    #[arg(value_name = "SCENE|RUN")]
+    pub(crate) what: String,
+}
+
+/// The scene and what is laid over it.
+#[derive(Debug, clap::Args)]
+pub(crate) struct SceneArgs {
+    /// A built-in scene's name (see `lahar list`) or a scene file
+    pub(crate) scene: String,
+
+    /// Set a key of the scene, as in `--set gravity=[0,-1.62]` or `--set bodies.column.velocity=[1,0]`
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
+
+    /// The instruction set to compute with; the widest of this machine if not given
+    #[arg(long, value_name = "SET", value_parser = isa)]
+    pub(crate) isa: Option<Isa>,
+}
+
+/// Options of `run`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Run {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// The folder to write; out/SCENE, numbered if taken, if not given
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Replace the run that is in the folder
+    #[arg(long, requires = "output")]
+    pub(crate) overwrite: bool,
+
+    /// Write frame 0 and so many more
+    #[arg(long, value_name = "N", conflicts_with = "until")]
+    pub(crate) frames: Option<u64>,
+
+    /// Run to this simulated time [s], to the end of the frame it is in
+    #[arg(long, value_name = "T", value_parser = positive)]
+    pub(crate) until: Option<f64>,
+
+    /// Threads to compute with; all of this machine if not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+
+    /// What to write of a frame: npz, png, gif (a film of all), or none; the scene's choice if not given
+    #[arg(long, value_name = "FORMATS", value_delimiter = ',')]
+    pub(crate) format: Option<Vec<String>>,
+
+    /// Make a film of the run (video.gif), whatever the formats
+    #[arg(long)]
+    pub(crate) video: bool,
+
+    /// Keep a picture of every frame (images/000000.png), whatever the formats
+    #[arg(long)]
+    pub(crate) images: bool,
+
+    /// Check everything and say what would be done, without doing it
+    #[arg(long)]
+    pub(crate) dry_run: bool,
+
+    /// Print the report as one JSON document on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `list`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct List {
+    /// Print one JSON document
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `show`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Show {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Print one JSON document
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `completions`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Completions {
+    /// The shell
+    pub(crate) shell: clap_complete::Shell,
+}
+
+fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((key, value)) if !key.trim().is_empty() => {
+            Ok((key.trim().to_owned(), value.trim().to_owned()))
+        }
+        _ => Err("write it as KEY=VALUE".to_owned()),
+    }
+}
+
+fn isa(text: &str) -> Result<Isa, String> {
+    let names = || Isa::ALL.map(Isa::name).join(", ");
+    let isa = Isa::ALL
+        .into_iter()
+        .find(|isa| isa.name() == text)
+        .ok_or_else(|| format!("it is one of {}", names()))?;
+    if isa.is_available() {
+        Ok(isa)
+    } else {
+        let have: Vec<_> = Isa::ALL
+            .into_iter()
+            .filter(|isa| isa.is_available())
+            .map(Isa::name)
+            .collect();
+        Err(format!(
+            "this machine does not have it; it has {}",
+            have.join(", ")
+        ))
+    }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|time: &f64| time.is_finite() && *time > 0.0)
+        .ok_or_else(|| "it is a number above 0".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_definitions_agree() {
+        Args::command().debug_assert();
+    }
+
+    #[test]
+    fn assignments() {
+        assert_eq!(assignment("dx = 0.1"), Ok(("dx".into(), "0.1".into())));
+        assert_eq!(assignment("a=b=c"), Ok(("a".into(), "b=c".into())));
+        assert!(assignment("dx").is_err() && assignment("=3").is_err());
+    }
+}

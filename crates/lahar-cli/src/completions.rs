@@ -1,0 +1,17 @@
+//! `lahar completions SHELL`.
+
+use std::process::ExitCode;
+
+use clap::CommandFactory;
+use clap_complete::Shell;
+
+use crate::args::Args;
+use crate::error::CliError;
+use crate::terminal;
+
+pub(crate) fn completions(shell: Shell) -> Result<ExitCode, CliError> {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Args::command(), "lahar", &mut text);
+    terminal::print(&String::from_utf8_lossy(&text));
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,284 @@
+//! From what was written on the command line to what is done: everything that can be wrong is found here.
+
+use std::path::PathBuf;
+
+use lahar::{Field, Isa, particles};
+use lahar_io::image::{self, Camera, Colouring, Renderer, Scenery, Style};
+use lahar_io::npz::Compression;
+use lahar_io::output::{Film, Pictures, RunFolder, film_pace};
+use lahar_io::scene::Scene;
+
+use crate::args;
+use crate::error::CliError;
+
+/// Width of a film \[pixels\]: a film of all frames is to stay a few megabytes.
+const FILM_WIDTH: u32 = 640;
+
+/// A run, checked.
+pub(crate) struct Plan {
+    /// What is run.
+    pub(crate) scene: Scene,
+    /// With which instructions.
+    pub(crate) isa: Isa,
+    /// On how many threads.
+    pub(crate) threads: usize,
+    /// Frames after the one at the start.
+    pub(crate) frames: u64,
+    /// Files of a frame.
+    pub(crate) formats: Formats,
+    /// The folder asked for; the usual one if none.
+    pub(crate) folder: Option<PathBuf>,
+    /// Whether a run in it is replaced.
+    pub(crate) overwrite: bool,
+    /// Say what would be done only.
+    pub(crate) dry_run: bool,
+    /// Stop after so many seconds, whatever is left.
+    pub(crate) deadline: Option<f64>,
+}
+
+/// What is written of frames.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Formats {
+    /// Particles.
+    pub(crate) npz: bool,
+    /// Pictures, every so many frames; 0: none.
+    pub(crate) png: u64,
+    /// A film.
+    pub(crate) gif: bool,
+}
+
+impl Formats {
+    /// From their names.
+    fn from_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, String> {
+        let mut formats = Self::default();
+        for name in names {
+            match name.trim() {
+                "npz" => formats.npz = true,
+                "png" => formats.png = 1,
+                "gif" => formats.gif = true,
+                "none" => {}
+                "vtk" | "vtp" | "ply" | "bgeo" => {
+                    return Err(format!(
+                        "the format \"{name}\" is not written yet; there are npz, png, gif and none"
+                    ));
+                }
+                _ => {
+                    return Err(format!(
+                        "there is no format \"{name}\"; there are npz, png, gif and none"
+                    ));
+                }
+            }
+        }
+        Ok(formats)
+    }
+
+    /// Their names.
+    pub(crate) fn names(self) -> Vec<&'static str> {
+        let names: Vec<_> = [(self.npz, "npz"), (self.png > 0, "png"), (self.gif, "gif")]
+            .into_iter()
+            .filter_map(|(wanted, name)| wanted.then_some(name))
+            .collect();
+        if names.is_empty() {
+            vec!["none"]
+        } else {
+            names
+        }
+    }
+}
+
+/// Threads of this machine.
+fn all_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+impl Plan {
+    /// Of `lahar run`.
+    pub(crate) fn from_args(args: &args::Run) -> Result<Self, CliError> {
+        let scene = Scene::load(&args.scene.scene, &args.scene.set)?;
+        let mut formats = match &args.format {
+            Some(names) => {
+                Formats::from_names(names.iter().map(String::as_str)).map_err(CliError::Usage)?
+            }
+            None => Formats::from_names(scene.output.formats.iter().map(String::as_str))
+                .map_err(|message| scene.error_at("output.formats", message))?,
+        };
+        formats.gif |= args.video;
+        if args.images {
+            formats.png = 1;
+        }
+        let frames = match (args.frames, args.until) {
+            (Some(frames), _) => frames,
+            // A little less, so that 0.1 s at 60 frames a second is 6 frames.
+            (None, Some(time)) => (time * scene.frame_rate - 1e-9).ceil().max(1.0) as u64,
+            (None, None) => scene.frames(),
+        };
+        Ok(Self {
+            isa: args.scene.isa.unwrap_or_else(Isa::detect),
+            threads: args.threads.map_or_else(all_threads, usize::from),
+            frames,
+            formats,
+            folder: args.output.clone(),
+            overwrite: args.overwrite,
+            dry_run: args.dry_run,
+            deadline: None,
+            scene,
+        })
+    }
+
+    /// Of `lahar` where there is no display: the scene with a film and some pictures, within `deadline` seconds.
+    pub(crate) fn demonstration(scene: &str, deadline: f64) -> Result<Self, CliError> {
+        let scene = Scene::load(scene, &[])?;
+        let frames = scene.frames();
+        Ok(Self {
+            isa: Isa::detect(),
+            threads: all_threads(),
+            frames,
+            formats: Formats {
+                npz: false,
+                png: (frames / DEMONSTRATION_PICTURES).max(1),
+                gif: true,
+            },
+            folder: None,
+            overwrite: false,
+            dry_run: false,
+            deadline: Some(deadline),
+            scene,
+        })
+    }
+
+    /// The scene's name in paths.
+    pub(crate) fn name(&self) -> String {
+        let stem = std::path::Path::new(&self.scene.name)
+            .file_stem()
+            .map_or_else(|| "run".into(), |stem| stem.to_string_lossy().into_owned());
+        if stem.is_empty() {
+            "run".to_owned()
+        } else {
+            stem
+        }
+    }
+
+    /// Makes the folder.
+    pub(crate) fn make_folder(&self) -> Result<RunFolder, CliError> {
+        Ok(match &self.folder {
+            Some(path) => RunFolder::at(path, self.overwrite)?,
+            None => RunFolder::numbered(std::path::Path::new(""), &self.name())?,
+        })
+    }
+
+    /// The fields that frames are made of.
+    pub(crate) fn fields(&self) -> Vec<Field> {
+        let chosen = |info: &particles::FieldInfo| {
+            let in_npz = self.formats.npz
+                && self
+                    .scene
+                    .output
+                    .fields
+                    .as_ref()
+                    .is_none_or(|names| names.iter().any(|name| name == info.name));
+            let drawn =
+                (self.formats.png > 0 || self.formats.gif) && image::FIELDS.contains(&info.field);
+            in_npz || drawn
+        };
+        particles::FIELDS
+            .iter()
+            .filter(|info| chosen(info))
+            .map(|info| info.field)
+            .collect()
+    }
+
+    /// Compression of particles.
+    pub(crate) fn npz(&self) -> Option<Compression> {
+        self.formats.npz.then_some(Compression::Stored)
+    }
+
+    /// Pictures, if wanted.
+    pub(crate) fn pictures(&self, scenery: &Scenery) -> Option<Pictures> {
+        let [width, height] = self.scene.output.picture_size;
+        (self.formats.png > 0).then(|| Pictures {
+            renderer: self.renderer(scenery, width, height),
+            every: self.formats.png,
+        })
+    }
+
+    /// A film, if wanted.
+    pub(crate) fn film(&self, scenery: &Scenery) -> Option<Film> {
+        let [width, height] = self.scene.output.picture_size;
+        let film_width = width.min(FILM_WIDTH);
+        let film_height =
+            (f64::from(height) * f64::from(film_width) / f64::from(width)).round() as u32;
+        self.formats.gif.then(|| Film {
+            renderer: self.renderer(scenery, film_width, film_height),
+            pace: film_pace(self.scene.frame_rate, self.frames),
+        })
+    }
+
+    fn renderer(&self, scenery: &Scenery, width: u32, height: u32) -> Renderer {
+        let camera = &self.scene.camera;
+        let style = Style {
+            width,
+            height,
+            colouring: match camera.color_by.as_str() {
+                "body" => Colouring::Body,
+                "speed" => Colouring::Speed(scenery.speed.max(1e-3)),
+                "pressure" => Colouring::Pressure(0.0, self.pressure_scale(scenery)),
+                _ => Colouring::Material,
+            },
+            ..Style::default()
+        };
+        let mut scenery = scenery.clone();
+        scenery.background = camera.background;
+        for (colour, material) in scenery.colours.iter_mut().zip(&self.scene.materials) {
+            *colour = material.color.unwrap_or(*colour);
+        }
+        let renderer = Renderer::new(scenery.clone(), style);
+        let aspect = f64::from(width) / f64::from(height);
+        let direction = camera.direction.map(|x| x as f32);
+        if direction.iter().all(|x| *x == 0.0) {
+            return renderer;
+        }
+        renderer.with_camera(Camera::showing_from(
+            scenery.bounds,
+            scenery.up,
+            aspect as f32,
+            direction,
+            camera.field_of_view.to_radians() as f32,
+        ))
+    }
+
+    /// What a column of half the scene's height weighs on its foot \[Pa\].
+    fn pressure_scale(&self, scenery: &Scenery) -> f64 {
+        let density = self
+            .scene
+            .materials
+            .iter()
+            .map(|material| material.density)
+            .fold(0.0, f64::max);
+        (density * scenery.speed * scenery.speed * 0.5).max(f64::MIN_POSITIVE)
+    }
+}
+
+/// Pictures of a demonstration, besides the first.
+const DEMONSTRATION_PICTURES: u64 = 6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_by_name() {
+        let formats = Formats::from_names(["npz", "gif"]).unwrap();
+        assert_eq!(formats.names(), ["npz", "gif"]);
+        assert_eq!(Formats::from_names(["none"]).unwrap().names(), ["none"]);
+        assert!(
+            Formats::from_names(["ply"])
+                .unwrap_err()
+                .contains("not written yet")
+        );
+        assert!(
+            Formats::from_names(["bmp"])
+                .unwrap_err()
+                .contains("no format")
+        );
+    }
+}

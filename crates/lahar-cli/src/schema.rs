@@ -1,0 +1,11 @@
+//! `lahar schema`.
+
+use std::process::ExitCode;
+
+use crate::error::CliError;
+use crate::terminal;
+
+pub(crate) fn schema() -> Result<ExitCode, CliError> {
+    terminal::print_json(&lahar_io::scene::schema());
+    Ok(ExitCode::SUCCESS)
+}

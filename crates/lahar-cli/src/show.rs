@@ -1,0 +1,179 @@
+//! `lahar show`: what a scene comes to, found by making it.
+
+use std::process::ExitCode;
+
+use lahar::Isa;
+use lahar_io::scene::Scene;
+use serde_json::{Value, json};
+
+use crate::args;
+use crate::error::CliError;
+use crate::progress::with_prefix;
+use crate::terminal;
+
+pub(crate) fn show(args: &args::Show) -> Result<ExitCode, CliError> {
+    let scene = Scene::load(&args.scene.scene, &args.scene.set)?;
+    let value = describe(&scene, args.scene.isa.unwrap_or_else(Isa::detect))?;
+    if args.json {
+        terminal::print_json(&value);
+    } else {
+        terminal::print(&text(&value));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What the scene comes to.
+pub(crate) fn describe(scene: &Scene, isa: Isa) -> Result<Value, CliError> {
+    let built = scene.build(isa)?;
+    let simulation = built.simulation;
+    let (dt, limit) = simulation.next_dt();
+    let memory = simulation.memory();
+    let bodies: Vec<Value> = scene
+        .bodies
+        .iter()
+        .zip(&built.body_particles)
+        .map(|(body, particles)| {
+            json!({
+                "name": body.name,
+                "material": scene.materials.get(body.material).map(|material| &material.name),
+                "particles": particles,
+            })
+        })
+        .collect();
+    let materials: Vec<Value> = scene
+        .materials
+        .iter()
+        .map(|material| {
+            json!({
+                "name": material.name,
+                "model": material.model,
+                "density": material.density,
+                "sound_speed": material.wave_speed,
+            })
+        })
+        .collect();
+    let fastest = scene
+        .materials
+        .iter()
+        .map(|material| material.wave_speed)
+        .fold(0.0, f64::max);
+    Ok(json!({
+        "name": scene.name,
+        "title": scene.title,
+        "dimension": scene.dimension,
+        "precision": simulation.precision(),
+        "isa": simulation.isa().name(),
+        "domain": simulation.domain().map(|(min, max)| json!({
+            "min": &min[..scene.dimension],
+            "max": &max[..scene.dimension],
+        })),
+        "dx": simulation.dx(),
+        "particles": simulation.particle_count(),
+        "bodies": bodies,
+        "materials": materials,
+        "blocks": memory.blocks,
+        "nodes": memory.nodes,
+        "memory_bytes": memory.grid_bytes + memory.particle_bytes,
+        "grid_bytes": memory.grid_bytes,
+        "particle_bytes": memory.particle_bytes,
+        "sound_speed": fastest,
+        "dt": dt,
+        "dt_limit": limit.name(),
+        "duration": scene.duration,
+        "frame_rate": scene.frame_rate,
+        "frames": scene.frames(),
+        "substeps_estimate": (scene.duration / dt).ceil(),
+        "warnings": built.warnings,
+    }))
+}
+
+/// The same for people.
+pub(crate) fn text(value: &Value) -> String {
+    let number = |key: &str| value[key].as_f64().unwrap_or(f64::NAN);
+    let word = |key: &str| value[key].as_str().unwrap_or_default().to_owned();
+    let mut lines = vec![format!(
+        "{}: {} ({}D, {})",
+        word("name"),
+        word("title"),
+        value["dimension"],
+        word("precision")
+    )];
+    let mut line = |name: &str, text: String| lines.push(format!("  {name:<12}{text}"));
+    let list = |value: &Value| {
+        let parts: Vec<String> = value
+            .as_array()
+            .into_iter()
+            .flatten()
+            .map(ToString::to_string)
+            .collect();
+        format!("({})", parts.join(", "))
+    };
+    line(
+        "domain",
+        match &value["domain"] {
+            Value::Null => "unbounded".to_owned(),
+            domain => format!("{} to {} m", list(&domain["min"]), list(&domain["max"])),
+        },
+    );
+    line("dx", format!("{} m", value["dx"]));
+    line("particles", value["particles"].to_string());
+    for body in value["bodies"].as_array().into_iter().flatten() {
+        line(
+            "",
+            format!(
+                "{}: {} of {}",
+                plain(&body["name"]),
+                body["particles"],
+                plain(&body["material"])
+            ),
+        );
+    }
+    for material in value["materials"].as_array().into_iter().flatten() {
+        line(
+            "material",
+            format!(
+                "{}: {}, {} kg/m³, sound at {:.4} m/s",
+                plain(&material["name"]),
+                plain(&material["model"]),
+                material["density"],
+                material["sound_speed"].as_f64().unwrap_or(f64::NAN),
+            ),
+        );
+    }
+    line(
+        "nodes",
+        format!("{} in {} blocks", value["nodes"], value["blocks"]),
+    );
+    line(
+        "memory",
+        format!(
+            "{}B ({}B particles, {}B grid)",
+            with_prefix(number("memory_bytes")),
+            with_prefix(number("particle_bytes")),
+            with_prefix(number("grid_bytes")),
+        ),
+    );
+    line(
+        "dt",
+        format!("{:.4e} s, limited by {}", number("dt"), word("dt_limit")),
+    );
+    line(
+        "run",
+        format!(
+            "{} s in {} frames, about {} substeps, {} particle-steps",
+            value["duration"],
+            value["frames"],
+            value["substeps_estimate"],
+            with_prefix(number("substeps_estimate") * number("particles")),
+        ),
+    );
+    line("computed by", word("isa"));
+    for warning in value["warnings"].as_array().into_iter().flatten() {
+        lines.push(format!("warning: {}", plain(warning)));
+    }
+    lines.join("\n") + "\n"
+}
+
+fn plain(value: &Value) -> String {
+    value.as_str().unwrap_or_default().to_owned()
+}

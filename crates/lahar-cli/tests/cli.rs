@@ -1,0 +1,305 @@
+//! The binary as its users meet it: exit codes, what is on which stream, what is in the folder.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// The default scene, coarse enough for a test.
+const COARSE: [&str; 4] = ["dam-break", "--set", "dx=0.0625", "--threads=1"];
+
+fn lahar(folder: &Path, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_lahar"))
+        .current_dir(folder)
+        .args(words)
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .output()
+        .expect("the binary starts")
+}
+
+fn run(folder: &Path, words: &[&str]) -> Output {
+    let words: Vec<&str> = ["run"]
+        .iter()
+        .chain(&COARSE)
+        .chain(words)
+        .copied()
+        .collect();
+    lahar(folder, &words)
+}
+
+fn here() -> TempDir {
+    tempfile::tempdir().expect("a temporary folder")
+}
+
+#[track_caller]
+fn code(output: &Output, expected: i32) {
+    assert_eq!(
+        output.status.code(),
+        Some(expected),
+        "{}\n{}",
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+}
+
+#[track_caller]
+fn json(output: &Output) -> Value {
+    serde_json::from_slice(&output.stdout).expect("standard output is one JSON document")
+}
+
+fn errors(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .expect("a folder")
+        .map(|entry| {
+            entry
+                .expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_run_leaves_what_was_asked_for() {
+    let here = here();
+    let words = ["--frames=3", "--format=npz,png,gif", "-o", "r"];
+    let output = run(here.path(), &words);
+    code(&output, 0);
+    let folder = here.path().join("r");
+    assert_eq!(
+        names(&folder),
+        [
+            "diagnostics.csv",
+            "frames",
+            "images",
+            "run.json",
+            "video.gif"
+        ]
+    );
+    assert_eq!(
+        names(&folder.join("frames")),
+        ["000000.npz", "000001.npz", "000002.npz", "000003.npz"]
+    );
+    assert_eq!(names(&folder.join("images")).len(), 4);
+    let csv = std::fs::read_to_string(folder.join("diagnostics.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 5);
+    let record: Value =
+        serde_json::from_slice(&std::fs::read(folder.join("run.json")).unwrap()).unwrap();
+    assert_eq!(record["status"], "done");
+    assert_eq!(record["frames"], 4);
+    assert_eq!(record["threads"], 1);
+    assert!(record["particle_steps_per_second"].as_f64().unwrap() > 0.0);
+    let arrays = lahar_io::npz::read(folder.join("frames/000003.npz")).unwrap();
+    let find = |name: &str| arrays.iter().find(|array| array.name == name).expect(name);
+    let n = find("id").shape[0];
+    assert_eq!(find("position").shape, [n, 2]);
+    assert_eq!(find("affine").shape, [n, 2, 2]);
+    assert!(find("id").data.to_f64().is_sorted());
+    assert!((find("time").data.to_f64()[0] - 0.05).abs() < 1e-12);
+}
+
+#[test]
+fn json_is_one_document_and_nothing_else() {
+    let here = here();
+    let output = run(here.path(), &["--frames=1", "--format=none", "--json"]);
+    code(&output, 0);
+    let report = json(&output);
+    assert_eq!(report["status"], "done");
+    assert_eq!(report["frames"], 2);
+    assert_eq!(
+        names(here.path().join("out/dam-break").as_path()),
+        ["diagnostics.csv", "run.json"]
+    );
+
+    let output = lahar(here.path(), &["list", "--json"]);
+    code(&output, 0);
+    assert_eq!(json(&output)[0]["name"], "dam-break");
+
+    let output = lahar(here.path(), &["show", "dam-break", "--json"]);
+    code(&output, 0);
+    let shown = json(&output);
+    for key in ["particles", "nodes", "memory_bytes", "sound_speed", "dt"] {
+        assert!(shown[key].as_f64().unwrap() > 0.0, "{key}: {shown}");
+    }
+    assert!(shown["dt_limit"].is_string());
+
+    let output = run(here.path(), &["--set", "gravty=1", "--json"]);
+    code(&output, 2);
+    assert_eq!(json(&output)["status"], "failed");
+}
+
+#[test]
+fn taken_folders_are_numbered_refused_or_replaced() {
+    let here = here();
+    for _ in 0..2 {
+        code(&run(here.path(), &["--frames=1", "--format=none"]), 0);
+    }
+    assert_eq!(
+        names(&here.path().join("out")),
+        ["dam-break", "dam-break-2"]
+    );
+
+    let again = ["--frames=1", "--format=none", "-o", "out/dam-break"];
+    let output = run(here.path(), &again);
+    code(&output, 2);
+    assert!(errors(&output).contains("resume") && errors(&output).contains("--overwrite"));
+    let replaced: Vec<&str> = again.iter().chain(&["--overwrite"]).copied().collect();
+    code(&run(here.path(), &replaced), 0);
+}
+
+#[test]
+fn wrong_commands_and_scenes_are_code_2() {
+    let here = here();
+    std::fs::write(
+        here.path().join("broken.toml"),
+        "dimension = 2\ndx = \"wide\"\n",
+    )
+    .unwrap();
+    for words in [
+        &["run", "no-such-scene"][..],
+        &["run", "broken.toml"],
+        &["run", "dam-break", "--format=ply"],
+        &["run", "dam-break", "--frames=1", "--until=1"],
+        &["run", "dam-break", "--isa=sse9"],
+        &["run", "dam-break", "--set", "dx"],
+        &["run", "dam-break", "--threads=0"],
+        &["nonsense"],
+    ] {
+        let output = lahar(here.path(), words);
+        code(&output, 2);
+        assert!(output.stdout.is_empty(), "{words:?}");
+        assert!(!output.stderr.is_empty(), "{words:?}");
+    }
+    assert_eq!(names(here.path()), ["broken.toml"], "nothing was made");
+    let shown = errors(&lahar(here.path(), &["run", "broken.toml"]));
+    assert!(shown.contains("broken.toml:2:6"), "{shown}");
+}
+
+#[test]
+fn a_folder_that_cannot_be_made_is_code_1_and_named() {
+    let here = here();
+    std::fs::write(here.path().join("file"), "").unwrap();
+    let output = run(here.path(), &["--frames=1", "-o", "file/below"]);
+    code(&output, 1);
+    assert!(
+        errors(&output).contains("file/below"),
+        "{}",
+        errors(&output)
+    );
+}
+
+#[test]
+fn a_dry_run_writes_nothing() {
+    let here = here();
+    let output = run(here.path(), &["--dry-run", "--until=0.1", "--json"]);
+    code(&output, 0);
+    assert_eq!(json(&output)["frames"], 6);
+    assert!(names(here.path()).is_empty());
+}
+
+#[test]
+fn the_same_run_gives_the_same_files() {
+    let here = here();
+    for (folder, threads) in [("a", "--threads=1"), ("b", "--threads=3")] {
+        let words = [
+            "run",
+            "dam-break",
+            "--set",
+            "dx=0.0625",
+            threads,
+            "--frames=4",
+            "--format=npz",
+            "-o",
+            folder,
+        ];
+        code(&lahar(here.path(), &words), 0);
+    }
+    for file in ["diagnostics.csv", "frames/000000.npz", "frames/000004.npz"] {
+        let [a, b] =
+            ["a", "b"].map(|folder| std::fs::read(here.path().join(folder).join(file)).unwrap());
+        assert!(a == b, "{file} depends on the number of threads");
+    }
+}
+
+#[test]
+fn lists_help_and_completions() {
+    let here = here();
+    let output = lahar(here.path(), &["list"]);
+    code(&output, 0);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(text.starts_with("dam-break "), "{text}");
+    for line in text.lines() {
+        let name = line.split_whitespace().next().unwrap();
+        code(&lahar(here.path(), &["show", name]), 0);
+    }
+    code(&lahar(here.path(), &["--help"]), 0);
+    code(&lahar(here.path(), &["--version"]), 0);
+    let output = lahar(here.path(), &["completions", "bash"]);
+    code(&output, 0);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("_lahar"));
+    let output = lahar(here.path(), &["schema"]);
+    code(&output, 0);
+    assert!(json(&output).is_object());
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_ends_after_the_frame_with_130_and_whole_files() {
+    use std::io::{BufRead, BufReader};
+    use std::process::Stdio;
+
+    let here = here();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lahar"))
+        .current_dir(here.path())
+        .args([
+            "run",
+            "dam-break",
+            "--threads=1",
+            "--format=npz",
+            "--frames=100000",
+            "--json",
+            "-o",
+            "r",
+        ])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // The first line says that it has begun.
+    let mut line = String::new();
+    let mut stderr = BufReader::new(child.stderr.take().unwrap());
+    stderr.read_line(&mut line).unwrap();
+    while !here.path().join("r/frames/000001.npz").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "{line}");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let killed = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(killed.success());
+    let output = child.wait_with_output().unwrap();
+    code(&output, 130);
+    assert_eq!(json(&output)["status"], "interrupted");
+    let folder = here.path().join("r");
+    let rows = std::fs::read_to_string(folder.join("diagnostics.csv"))
+        .unwrap()
+        .lines()
+        .count()
+        - 1;
+    let frames = names(&folder.join("frames"));
+    assert_eq!(frames.len(), rows);
+    for frame in frames {
+        lahar_io::npz::read(folder.join("frames").join(frame)).unwrap();
+    }
+}
