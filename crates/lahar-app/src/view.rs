@@ -443,14 +443,19 @@ fn scene_list(state: &mut AppState, ui: &Ui) {
                             match state.thumbnails.get(&scene.name) {
                                 Some(picture) => {
                                     let picture = egui::Image::new(picture);
-                                    ui.add(picture.max_size(THUMBNAIL).alt_text(&scene.title));
+                                    let picture =
+                                        picture.max_size(THUMBNAIL).alt_text(&scene.title);
+                                    ui.add_sized(THUMBNAIL, picture);
                                 }
                                 None => {
                                     ui.allocate_space(THUMBNAIL);
                                 }
                             }
                             ui.vertical(|ui| {
-                                let title = format!("{}  ({}D)", scene.title, scene.dimension);
+                                let mut title = scene.title.clone();
+                                if scene.dimension == 3 && !title.contains("3D") {
+                                    title += "  (3D)";
+                                }
                                 let current = scene.name == state.scene;
                                 if ui
                                     .selectable_label(current, RichText::new(title).strong())

@@ -231,7 +231,7 @@ fn buttons_do_what_their_keys_do() {
     }
     harness.get_by_label("List").click();
     harness.run();
-    harness.get_by_label("Double dam  (2D)").click();
+    harness.get_by_label("Double dam").click();
     harness.run();
     assert_eq!(
         orders(&mut harness),
