@@ -1,6 +1,7 @@
 //! What the window knows and decides, without a window: actions, pointer and snapshots in; orders to
 //! the solver and a picture out. Tests drive it as a hand would.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use eframe::egui::{self, Color32};
@@ -10,7 +11,7 @@ use crate::camera::{Camera, V3, add, against, corners, length, scale, sub};
 use crate::colour::{self, ColourBy, Range};
 use crate::controls::{Action, Direction};
 use crate::renderer::{Line, Picture, Sprite, View};
-use crate::scenes::SceneCard;
+use crate::scenes::{Changes, SceneCard, Setting};
 use crate::solver::{Condition, Facts, Order, Readouts, Shown};
 
 /// What the window must do for the state.
@@ -20,6 +21,8 @@ pub enum Effect {
     Order(Order),
     /// Save the window as a picture.
     Screenshot,
+    /// Draw small pictures of the scenes, into [`AppState::thumbnails`].
+    Thumbnails,
     /// Close the window.
     Close,
 }
@@ -62,6 +65,8 @@ pub struct AppState {
     pub default_scene: String,
     /// The open scene, by name or path.
     pub scene: String,
+    /// The scene's settings as the panel has them; they hold from [`AppState::apply_settings`] on.
+    pub settings: Vec<Setting>,
     /// Whether the clock stands.
     pub paused: bool,
     /// Simulated seconds per second, at most.
@@ -82,6 +87,8 @@ pub struct AppState {
     pub held: Option<(V3, Grip)>,
     /// Whether the list of scenes is open.
     pub show_scenes: bool,
+    /// Small pictures of the scenes, by name; they come one by one.
+    pub thumbnails: HashMap<String, egui::TextureHandle>,
     /// Whether the hints are in sight.
     pub show_hints: bool,
     /// Whether the side panel is in sight.
@@ -93,6 +100,7 @@ pub struct AppState {
     /// Width over height of where the scene is drawn.
     pub aspect: f64,
 
+    changes: Changes,
     shown: Shown,
     effects: Vec<Effect>,
     sprites: Arc<Vec<Sprite>>,
@@ -101,6 +109,7 @@ pub struct AppState {
     extent: (V3, V3),
     recolour: bool,
     refit: bool,
+    asked_for_thumbnails: bool,
 }
 
 /// Radius in parts of the spacing: discs that leave no holes between jittered particles.
@@ -121,6 +130,7 @@ impl AppState {
             scenes,
             default_scene: default_scene.to_owned(),
             scene: String::new(),
+            settings: vec![],
             paused: false,
             speed: 1.0,
             gravity: [0.0; 3],
@@ -131,11 +141,13 @@ impl AppState {
             hand: Hand::default(),
             held: None,
             show_scenes: false,
+            thumbnails: HashMap::new(),
             show_hints: true,
             show_panel: true,
             camera: None,
             notice: None,
             aspect: 1.5,
+            changes: vec![],
             shown: Shown::default(),
             effects: vec![],
             sprites: Arc::default(),
@@ -144,6 +156,7 @@ impl AppState {
             extent: ([0.0; 3], [1.0; 3]),
             recolour: false,
             refit: true,
+            asked_for_thumbnails: false,
         };
         state.open(scene.unwrap_or(default_scene).to_owned());
         state
@@ -195,7 +208,12 @@ impl AppState {
                     self.open(card.name.clone());
                 }
             }
-            Action::SceneList => self.show_scenes = !self.show_scenes,
+            Action::SceneList => {
+                self.show_scenes = !self.show_scenes;
+                if !core::mem::replace(&mut self.asked_for_thumbnails, true) {
+                    self.effects.push(Effect::Thumbnails);
+                }
+            }
             Action::Gravity(direction) => {
                 let pull = self.scene_gravity();
                 let axis = self.axis(direction);
@@ -234,7 +252,36 @@ impl AppState {
         self.scene.clone_from(&name);
         self.show_scenes = false;
         self.refit = true;
-        self.order(Order::Open(name));
+        self.changes.clear();
+        self.order(Order::Open(name, vec![]));
+    }
+
+    /// Opens the scene anew with the settings of the panel.
+    pub fn apply_settings(&mut self) {
+        let before = self.facts().map_or(&[][..], |facts| &facts.settings);
+        let changed = self.settings.iter().filter(|new| {
+            let old = before.iter().find(|old| old.key == new.key);
+            old.is_some_and(|old| old.value != new.value)
+        });
+        let changed: Changes = changed
+            .map(|new| (new.key.clone(), new.value.to_toml()))
+            .collect();
+        // A later change of a key replaces the earlier one.
+        self.changes
+            .retain(|(key, _)| !changed.iter().any(|(new, _)| new == key));
+        self.changes.extend(changed);
+        self.order(Order::Open(self.scene.clone(), self.changes.clone()));
+    }
+
+    /// Opens the scene as its file has it.
+    pub fn forget_settings(&mut self) {
+        self.changes.clear();
+        self.order(Order::Open(self.scene.clone(), vec![]));
+    }
+
+    /// Whether the scene runs with changes.
+    pub fn has_changes(&self) -> bool {
+        !self.changes.is_empty()
     }
 
     /// Stops the clock, or lets it run.
@@ -253,6 +300,7 @@ impl AppState {
 
     /// Replaces gravity \[m/s²\].
     pub fn set_gravity(&mut self, gravity: V3) {
+        let gravity = gravity.map(|c| c + 0.0); // no -0
         self.gravity = gravity;
         self.order(Order::Tell(Command::Gravity(gravity)));
     }
@@ -364,6 +412,7 @@ impl AppState {
         self.shown = shown;
         if opened && let Some(facts) = self.shown.facts.clone() {
             self.gravity = facts.gravity;
+            self.settings.clone_from(&facts.settings);
             self.range.forget();
             let another = scene_before.as_ref() != Some(&facts.card.name);
             if another {

@@ -115,7 +115,7 @@ pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), Ap
     check_adapter(&adapter_setup.instance_descriptor)?;
 
     let state = AppState::new(source.list(), DEFAULT_SCENE, options.scene.as_deref());
-    let solver = Solver::start(source)
+    let solver = Solver::start(Arc::clone(&source))
         .map_err(|error| AppError::Window(format!("no thread for the solver: {error}")))?;
     let mut native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
@@ -136,6 +136,7 @@ pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), Ap
                     context,
                     state,
                     solver,
+                    source,
                     options.screenshots,
                 )))
             }),

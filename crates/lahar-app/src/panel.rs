@@ -1,10 +1,11 @@
 //! The side panel: everything that the keys do, and sliders, for the mouse.
 
-use eframe::egui::{self, RichText, Slider, Ui};
+use eframe::egui::{self, DragValue, RichText, Slider, Ui};
 
 use crate::app_state::AppState;
 use crate::colour::ColourBy;
 use crate::controls::{Action, Direction};
+use crate::scenes::SettingValue;
 use crate::solver::Condition;
 
 /// The whole panel.
@@ -34,6 +35,55 @@ pub fn panel(state: &mut AppState, ui: &mut Ui) {
         hand(state, ui);
         ui.separator();
         readouts(state, ui);
+        ui.separator();
+        egui::CollapsingHeader::new("Settings of the scene").show(ui, |ui| settings(state, ui));
+    });
+}
+
+/// Resolution, scheme, material parameters: they take effect with a restart.
+fn settings(state: &mut AppState, ui: &mut Ui) {
+    let mut group = String::new();
+    egui::Grid::new("settings").num_columns(2).show(ui, |ui| {
+        for setting in &mut state.settings {
+            if setting.group != group {
+                group.clone_from(&setting.group);
+                ui.label(RichText::new(&group).strong());
+                ui.end_row();
+            }
+            let label = ui.label(&setting.name).id;
+            match &mut setting.value {
+                SettingValue::Number(number) => {
+                    let speed = (number.abs() * 0.01).max(1e-6);
+                    ui.add(DragValue::new(number).speed(speed).max_decimals(8))
+                        .labelled_by(label);
+                }
+                SettingValue::Word(word, words) => {
+                    egui::ComboBox::from_id_salt(&setting.key)
+                        .selected_text(word.as_str())
+                        .show_ui(ui, |ui| {
+                            for choice in *words {
+                                ui.selectable_value(word, (*choice).to_owned(), *choice);
+                            }
+                        })
+                        .response
+                        .labelled_by(label);
+                }
+            }
+            ui.end_row();
+        }
+    });
+    ui.horizontal(|ui| {
+        if ui
+            .button("Apply")
+            .on_hover_text("Restarts the scene with these")
+            .clicked()
+        {
+            state.apply_settings();
+        }
+        let own = ui.add_enabled(state.has_changes(), egui::Button::new("As in the file"));
+        if own.clicked() {
+            state.forget_settings();
+        }
     });
 }
 
@@ -43,9 +93,10 @@ fn scene(state: &mut AppState, ui: &mut Ui) {
         .facts()
         .map_or_else(|| state.scene.clone(), |facts| facts.card.title.clone());
     ui.horizontal(|ui| {
+        let label = ui.label("scene").id;
         egui::ComboBox::from_id_salt("scene")
             .selected_text(title)
-            .width(150.0)
+            .width(140.0)
             .show_ui(ui, |ui| {
                 for (i, card) in state.scenes.iter().enumerate() {
                     let title = &card.title;
@@ -61,7 +112,9 @@ fn scene(state: &mut AppState, ui: &mut Ui) {
                         chosen = Some(card.name.clone());
                     }
                 }
-            });
+            })
+            .response
+            .labelled_by(label);
         if ui
             .button("List")
             .on_hover_text("What there is to see (L)")
@@ -125,7 +178,8 @@ fn gravity(state: &mut AppState, ui: &mut Ui) {
             ("↓", "down (S)", Direction::Down),
         ] {
             let text = format!("Gravity to the window's {name}");
-            if ui.button(label).on_hover_text(text).clicked() {
+            let arrow = RichText::new(label).monospace(); // the font that has arrows
+            if ui.button(arrow).on_hover_text(text).clicked() {
                 state.act(Action::Gravity(direction));
             }
         }

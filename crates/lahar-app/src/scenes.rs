@@ -1,10 +1,11 @@
 //! Where scenes come from: the window knows them by name and gets a simulation that is ready to run.
 
-use lahar::{Isa, Simulate};
+use lahar::{Field, Isa, Simulate};
 use lahar_io::builtin;
+use lahar_io::image::{Picture, Renderer, Scenery, Style};
 use lahar_io::scene::Scene;
 
-use crate::colour::ColourBy;
+use crate::colour::{ColourBy, palette};
 
 /// A scene as lists show it.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,9 +61,46 @@ pub struct Stage {
     pub body_swatches: Vec<usize>,
     /// How the scene wants to be looked at.
     pub angle: Angle,
+    /// What the panel offers to change.
+    pub settings: Vec<Setting>,
     /// What the scene's author should know though it runs.
     pub warnings: Vec<String>,
 }
+
+/// A key of the scene that the panel offers to change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// Dotted, as `--set` on the command line takes it.
+    pub key: String,
+    /// Heading that it stands under: "scene", a material, a body.
+    pub group: String,
+    /// Its name under the heading.
+    pub name: String,
+    /// What it is now.
+    pub value: SettingValue,
+}
+
+/// What a setting can be.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SettingValue {
+    /// A number.
+    Number(f64),
+    /// One of these words.
+    Word(String, &'static [&'static str]),
+}
+
+impl SettingValue {
+    /// As a scene file has it.
+    pub fn to_toml(&self) -> String {
+        match self {
+            Self::Number(number) => format!("{number:?}"),
+            Self::Word(word, _) => format!("\"{word}\""),
+        }
+    }
+}
+
+/// Keys and values in TOML, laid over a scene, as `--set` on the command line.
+pub type Changes = Vec<(String, String)>;
 
 /// How to look at a scene. The window fits itself to the scene's size.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -80,11 +118,16 @@ pub trait SceneSource: Send + Sync {
     /// The scenes to choose from; keys 1 to 9 open the first nine.
     fn list(&self) -> Vec<SceneCard>;
 
-    /// Builds a scene at its start.
+    /// Builds a scene at its start, with changes.
     ///
     /// # Errors
     /// What is wrong with the scene and where, for people to read.
-    fn open(&self, name_or_path: &str) -> Result<Stage, String>;
+    fn open(&self, name_or_path: &str, changes: &Changes) -> Result<Stage, String>;
+
+    /// A small picture of a scene for lists, no larger than `size` pixels; takes its time.
+    fn thumbnail(&self, _name: &str, _size: [u32; 2]) -> Option<Picture> {
+        None
+    }
 }
 
 /// The scenes that ship with lahar, and scene files.
@@ -92,8 +135,8 @@ pub trait SceneSource: Send + Sync {
 pub struct Shelf {
     /// The instruction set to run on.
     pub isa: Isa,
-    /// Keys and values laid over every scene, as `--set` on the command line.
-    pub overrides: Vec<(String, String)>,
+    /// Laid over every scene.
+    pub overrides: Changes,
 }
 
 impl Default for Shelf {
@@ -119,8 +162,9 @@ impl SceneSource for Shelf {
             .collect()
     }
 
-    fn open(&self, name_or_path: &str) -> Result<Stage, String> {
-        let scene = Scene::load(name_or_path, &self.overrides).map_err(|e| e.render(false))?;
+    fn open(&self, name_or_path: &str, changes: &Changes) -> Result<Stage, String> {
+        let changes = [self.overrides.as_slice(), changes].concat();
+        let scene = Scene::load(name_or_path, &changes).map_err(|e| e.render(false))?;
         let built = scene.build(self.isa).map_err(|e| e.render(false))?;
         let (swatches, body_swatches) = swatches(&scene);
         Ok(Stage {
@@ -151,9 +195,81 @@ impl SceneSource for Shelf {
                     _ => ColourBy::Material,
                 },
             },
+            settings: settings(&scene.resolved()),
             warnings: built.warnings,
         })
     }
+
+    fn thumbnail(&self, name: &str, [width, height]: [u32; 2]) -> Option<Picture> {
+        let stage = self.open(name, &vec![]).ok()?;
+        let simulation = stage.simulation.as_ref();
+        let mut scenery = Scenery::of(simulation, &[]);
+        scenery.colours = palette(&stage.swatches)
+            .iter()
+            .map(|colour| [colour.r(), colour.g(), colour.b()])
+            .collect();
+        let style = Style {
+            width,
+            height,
+            ..Style::default()
+        };
+        let fields = [
+            Field::Position,
+            Field::Velocity,
+            Field::Material,
+            Field::Body,
+            Field::Volume0,
+        ];
+        Some(Renderer::new(scenery, style).render(&simulation.snapshot(&fields)))
+    }
+}
+
+/// What of a scene is worth turning while one watches.
+fn settings(scene: &serde_json::Value) -> Vec<Setting> {
+    const WORDS: [(&str, &[&str]); 3] = [
+        ("transfer", &["apic", "flip", "pic"]),
+        ("force", &["mls", "classic"]),
+        ("kernel", &["quadratic", "cubic", "linear"]),
+    ];
+    let mut settings = vec![];
+    let mut offer = |group: &str, path: &str, name: &str, value: Option<&serde_json::Value>| {
+        let words = WORDS.iter().find(|(key, _)| *key == name);
+        let value = match (value, words) {
+            (Some(serde_json::Value::Number(number)), None) => {
+                number.as_f64().map(SettingValue::Number)
+            }
+            (Some(serde_json::Value::String(word)), Some((_, words))) => {
+                Some(SettingValue::Word(word.clone(), words))
+            }
+            _ => None,
+        };
+        settings.extend(value.map(|value| Setting {
+            key: format!("{path}{name}"),
+            group: group.to_owned(),
+            name: name.to_owned(),
+            value,
+        }));
+    };
+    for name in ["dx", "transfer", "flip_blend", "force", "kernel", "cfl"] {
+        offer("scene", "", name, scene.get(name));
+    }
+    for (material, table) in scene["materials"].as_object().into_iter().flatten() {
+        for (name, value) in table.as_object().into_iter().flatten() {
+            offer(
+                material,
+                &format!("materials.{material}."),
+                name,
+                Some(value),
+            );
+        }
+    }
+    for table in scene["bodies"].as_array().into_iter().flatten() {
+        if let Some(body) = table["name"].as_str() {
+            let name = "particles_per_cell";
+            offer(body, &format!("bodies.{body}."), name, table.get(name));
+        }
+    }
+    settings
 }
 
 /// The materials, then the bodies that have colours of their own; and which is whose.

@@ -5,6 +5,7 @@ use std::io::{BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use eframe::egui::ColorImage;
+use lahar_io::image::Picture;
 
 /// Writes the picture under the first free name `lahar-SCENE-000.png`, …, and returns its path.
 ///
@@ -33,19 +34,16 @@ pub(crate) fn save(folder: &Path, scene: &str, image: &ColorImage) -> Result<Pat
             Err(error) => return Err(why(&error)),
             Ok(file) => file,
         };
-        let [width, height] = image.size.map(|n| n as u32);
-        let mut encoder = png::Encoder::new(BufWriter::new(file), width, height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        let rgb: Vec<u8> = image
-            .pixels
-            .iter()
-            .flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()])
-            .collect();
-        let write = |error: png::EncodingError| why(&error);
-        let mut writer = encoder.write_header().map_err(write)?;
-        writer.write_image_data(&rgb).map_err(write)?;
-        writer.finish().map_err(write)?;
+        let picture = Picture {
+            width: image.size[0] as u32,
+            height: image.size[1] as u32,
+            rgb: (image.pixels.iter())
+                .flat_map(|pixel| [pixel.r(), pixel.g(), pixel.b()])
+                .collect(),
+        };
+        picture
+            .write_png(BufWriter::new(file))
+            .map_err(|error| why(&error))?;
         return Ok(std::path::absolute(&path).unwrap_or(path));
     }
     Err(format!(

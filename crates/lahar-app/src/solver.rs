@@ -18,13 +18,13 @@ use std::time::{Duration, Instant};
 use lahar::{Advance, Command, DtLimit, Failure, Field, Simulate, Snapshot};
 use triple_buffer::{Input, Output, TripleBuffer};
 
-use crate::scenes::{Angle, SceneCard, SceneSource, Stage, Swatch};
+use crate::scenes::{Angle, Changes, SceneCard, SceneSource, Setting, Stage, Swatch};
 
 /// What the window may ask of the solver.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Order {
-    /// Opens a scene by name or path.
-    Open(String),
+    /// Opens a scene by name or path, with changes.
+    Open(String, Changes),
     /// The same scene, from its start.
     Restart,
     /// Stops the clock, or lets it run.
@@ -63,6 +63,8 @@ pub struct Facts {
     pub body_swatches: Vec<usize>,
     /// How the scene wants to be looked at.
     pub angle: Angle,
+    /// What the panel offers to change.
+    pub settings: Vec<Setting>,
     /// "f32" or "f64", and the instruction set.
     pub numbers: String,
     /// What the scene's author should know though it runs.
@@ -172,7 +174,7 @@ struct Worker {
     source: Arc<dyn SceneSource>,
     output: Input<Shown>,
     shown: Shown,
-    name: Option<String>,
+    wanted: Option<(String, Changes)>,
     simulation: Option<Box<dyn Simulate>>,
     frame_rate: f64,
     frame: u64,
@@ -192,7 +194,7 @@ impl Worker {
             source,
             output,
             shown: Shown::default(),
-            name: None,
+            wanted: None,
             simulation: None,
             frame_rate: 60.0,
             frame: 0,
@@ -251,8 +253,8 @@ impl Worker {
 
     fn obey(&mut self, order: Order) {
         match order {
-            Order::Open(name) => {
-                self.name = Some(name);
+            Order::Open(name, changes) => {
+                self.wanted = Some((name, changes));
                 self.open();
             }
             Order::Restart => self.open(),
@@ -285,13 +287,13 @@ impl Worker {
     }
 
     fn open(&mut self) {
-        let Some(name) = self.name.clone() else {
+        let Some((name, changes)) = self.wanted.clone() else {
             return;
         };
         self.shown.condition = Condition::Opening;
         self.publish(); // the old particles stay in sight while the new ones are seeded
         let source = Arc::clone(&self.source);
-        let stage = catch_unwind(AssertUnwindSafe(|| source.open(&name)))
+        let stage = catch_unwind(AssertUnwindSafe(|| source.open(&name, &changes)))
             .unwrap_or_else(|panic| Err(mistake(&*panic)));
         match stage {
             Ok(stage) => self.begin(stage),
@@ -315,6 +317,7 @@ impl Worker {
             swatches: stage.swatches,
             body_swatches: stage.body_swatches,
             angle: stage.angle,
+            settings: stage.settings,
             numbers: format!("{}, {}", simulation.precision(), simulation.isa().name()),
             warnings: stage.warnings,
             card: stage.card,

@@ -12,6 +12,8 @@ use crate::panel::{grouped, millions, panel, real_time};
 use crate::solver::Condition;
 
 const INK: Color32 = Color32::from_rgb(0xd7, 0xe3, 0xea);
+/// Room for a scene's small picture.
+const THUMBNAIL: Vec2 = vec2(112.0, 64.0);
 const SHADE: Color32 = Color32::from_black_alpha(140);
 
 /// Everything in the window: keys, panel, scene, and what lies over it.
@@ -96,7 +98,7 @@ fn pointer(state: &mut AppState, ui: &Ui, rect: Rect, response: &egui::Response)
     if response.contains_pointer()
         && let (Some(at), Some(camera)) = (at, state.camera.as_mut())
     {
-        let factor = f64::from((scroll.y * 0.004).exp() * pinch);
+        let factor = f64::from((scroll.y * 0.002).exp() * pinch);
         if factor != 1.0 {
             camera.zoom(factor, at, aspect);
         }
@@ -421,7 +423,7 @@ fn scene_list(state: &mut AppState, ui: &Ui) {
         .collapsible(false)
         .resizable(false)
         .anchor(Align2::CENTER_CENTER, Vec2::ZERO)
-        .default_width(520.0)
+        .default_size([600.0, 680.0])
         .show(ui.ctx(), |ui| {
             let height = ui.ctx().content_rect().height() - 120.0;
             egui::ScrollArea::vertical()
@@ -438,8 +440,22 @@ fn scene_list(state: &mut AppState, ui: &Ui) {
                                 [14.0, 18.0],
                                 egui::Label::new(RichText::new(key).strong()),
                             );
+                            match state.thumbnails.get(&scene.name) {
+                                Some(picture) => {
+                                    let picture = egui::Image::new(picture);
+                                    let picture =
+                                        picture.max_size(THUMBNAIL).alt_text(&scene.title);
+                                    ui.add_sized(THUMBNAIL, picture);
+                                }
+                                None => {
+                                    ui.allocate_space(THUMBNAIL);
+                                }
+                            }
                             ui.vertical(|ui| {
-                                let title = format!("{}  ({}D)", scene.title, scene.dimension);
+                                let mut title = scene.title.clone();
+                                if scene.dimension == 3 && !title.contains("3D") {
+                                    title += "  (3D)";
+                                }
                                 let current = scene.name == state.scene;
                                 if ui
                                     .selectable_label(current, RichText::new(title).strong())

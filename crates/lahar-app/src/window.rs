@@ -6,8 +6,10 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 use eframe::egui::{self, ColorImage};
+use lahar_io::image::Picture;
 
 use crate::app_state::{AppState, Effect};
+use crate::scenes::SceneSource;
 use crate::solver::Solver;
 use crate::{colour, renderer, screenshot, view};
 
@@ -17,6 +19,8 @@ pub(crate) struct Window {
     solver: Solver,
     screenshots: PathBuf,
     pictures: (Sender<Arc<ColorImage>>, Receiver<Arc<ColorImage>>),
+    source: Arc<dyn SceneSource>,
+    thumbnails: Option<Receiver<(String, Picture)>>,
 }
 
 impl Window {
@@ -24,6 +28,7 @@ impl Window {
         context: &eframe::CreationContext<'_>,
         state: AppState,
         solver: Solver,
+        source: Arc<dyn SceneSource>,
         screenshots: PathBuf,
     ) -> Self {
         if let Some(render_state) = &context.wgpu_render_state {
@@ -35,6 +40,8 @@ impl Window {
             solver,
             screenshots,
             pictures: channel(),
+            source,
+            thumbnails: None,
         }
     }
 
@@ -43,6 +50,7 @@ impl Window {
             match effect {
                 Effect::Order(order) => self.solver.order(order),
                 Effect::Close => context.send_viewport_cmd(egui::ViewportCommand::Close),
+                Effect::Thumbnails => self.draw_thumbnails(),
                 Effect::Screenshot => {
                     let pictures = self.pictures.0.clone();
                     let repaint = context.clone();
@@ -55,7 +63,37 @@ impl Window {
             }
         }
     }
+
+    /// One scene after the other, on a thread of their own: they have to be built to be drawn.
+    fn draw_thumbnails(&mut self) {
+        let (sender, receiver) = channel();
+        let source = Arc::clone(&self.source);
+        let draw = move || {
+            for card in source.list() {
+                if let Some(picture) = source.thumbnail(&card.name, THUMBNAIL_PIXELS)
+                    && sender.send((card.name, picture)).is_err()
+                {
+                    return;
+                }
+            }
+        };
+        // Without a thread there are no pictures, and the list is as good.
+        let thread = std::thread::Builder::new().name("lahar thumbnails".into());
+        self.thumbnails = thread.spawn(draw).ok().map(|_| receiver);
+    }
+
+    fn take_thumbnails(&mut self, context: &egui::Context) {
+        for (name, picture) in self.thumbnails.iter().flat_map(Receiver::try_iter) {
+            let size = [picture.width as usize, picture.height as usize];
+            let image = ColorImage::from_rgb(size, &picture.rgb);
+            let texture = context.load_texture(&name, image, egui::TextureOptions::LINEAR);
+            self.state.thumbnails.insert(name, texture);
+        }
+    }
 }
+
+/// Largest small picture: two pixels a point.
+const THUMBNAIL_PIXELS: [u32; 2] = [224, 128];
 
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
@@ -71,6 +109,7 @@ impl eframe::App for Window {
             };
             self.state.say(text, ui.input(|input| input.time));
         }
+        self.take_thumbnails(&context);
         view::window(&mut self.state, ui);
         self.carry_out(&context);
         // Moving: as fast as the display goes. Standing: often enough to see what a key did.

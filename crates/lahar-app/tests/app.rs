@@ -12,7 +12,7 @@ use egui_kittest::kittest::Queryable;
 use lahar::{Command, Field, PointerAction};
 use lahar_app::app_state::{AppState, Effect, Grip};
 use lahar_app::colour::ColourBy;
-use lahar_app::scenes::{SceneSource, Shelf};
+use lahar_app::scenes::{SceneSource, SettingValue, Shelf};
 use lahar_app::solver::{Condition, Order, Shown, Solver};
 use lahar_app::{DEFAULT_SCENE, view};
 
@@ -20,7 +20,7 @@ use lahar_app::{DEFAULT_SCENE, view};
 fn shown(name: &str, opened: u64) -> Shown {
     let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
     solver.order(Order::Pause(true));
-    solver.order(Order::Open(name.into()));
+    solver.order(Order::Open(name.into(), vec![]));
     let mut shown = wait(&mut solver, |shown| shown.opened > 0);
     shown.opened = opened;
     shown
@@ -56,7 +56,7 @@ fn orders(harness: &mut Harness<'_, AppState>) -> Vec<Order> {
     let effects = harness.state_mut().take_effects();
     let order = |effect| match effect {
         Effect::Order(order) => Some(order),
-        Effect::Screenshot | Effect::Close => None,
+        Effect::Screenshot | Effect::Thumbnails | Effect::Close => None,
     };
     effects.into_iter().filter_map(order).collect()
 }
@@ -75,12 +75,15 @@ fn the_default_scene_opens_first_and_shift_r_comes_back_to_it() {
     let mut state = AppState::new(support::Blocks.list(), DEFAULT_SCENE, None);
     assert_eq!(
         state.take_effects(),
-        [Effect::Order(Order::Open("dam-break".into()))]
+        [Effect::Order(Order::Open("dam-break".into(), vec![]))]
     );
     let mut harness = harness("double-dam");
     harness.key_press_modifiers(Modifiers::SHIFT, Key::R);
     harness.run();
-    assert_eq!(orders(&mut harness), [Order::Open("dam-break".into())]);
+    assert_eq!(
+        orders(&mut harness),
+        [Order::Open("dam-break".into(), vec![])]
+    );
     harness.key_press(Key::R);
     harness.run();
     assert_eq!(orders(&mut harness), [Order::Restart]);
@@ -91,7 +94,10 @@ fn number_keys_choose_scenes_and_numbers_without_one_do_nothing() {
     let mut harness = harness("dam-break");
     harness.key_press(Key::Num2);
     harness.run();
-    assert_eq!(orders(&mut harness), [Order::Open("double-dam".into())]);
+    assert_eq!(
+        orders(&mut harness),
+        [Order::Open("double-dam".into(), vec![])]
+    );
     harness.key_press(Key::Num9);
     harness.run();
     assert_eq!(orders(&mut harness), []);
@@ -193,8 +199,9 @@ fn h_p_and_l_show_and_hide_f12_takes_a_picture_and_escape_leaves() {
     harness.key_press(Key::P);
     harness.key_press(Key::L);
     harness.run();
-    let state = harness.state();
+    let state = harness.state_mut();
     assert!(!state.show_hints && !state.show_panel && state.show_scenes);
+    assert_eq!(state.take_effects(), [Effect::Thumbnails]);
     harness.key_press(Key::F12);
     harness.run();
     assert_eq!(harness.state_mut().take_effects(), [Effect::Screenshot]);
@@ -224,10 +231,34 @@ fn buttons_do_what_their_keys_do() {
     }
     harness.get_by_label("List").click();
     harness.run();
-    harness.get_by_label("Double dam  (2D)").click();
+    harness.get_by_label("Double dam").click();
     harness.run();
-    assert_eq!(orders(&mut harness), [Order::Open("double-dam".into())]);
+    assert_eq!(
+        orders(&mut harness),
+        [Order::Open("double-dam".into(), vec![])]
+    );
     assert!(!harness.state().show_scenes);
+}
+
+#[test]
+fn settings_are_applied_with_a_restart_and_forgotten_with_another_scene() {
+    let mut harness = harness("dam-break");
+    let state = harness.state_mut();
+    state.settings[0].value = SettingValue::Number(0.25);
+    state.apply_settings();
+    let change = vec![("materials.water.viscosity".to_owned(), "0.25".to_owned())];
+    assert_eq!(
+        orders(&mut harness),
+        [Order::Open("dam-break".into(), change)]
+    );
+    assert!(harness.state().has_changes());
+    harness.key_press(Key::Num1);
+    harness.run();
+    assert_eq!(
+        orders(&mut harness),
+        [Order::Open("dam-break".into(), vec![])]
+    );
+    assert!(!harness.state().has_changes());
 }
 
 #[test]
@@ -323,11 +354,14 @@ fn in_3d_a_drag_orbits_and_the_hand_takes_hold_of_the_nearest_water() {
 
 #[test]
 fn a_scene_left_alone_has_the_same_bits_as_a_headless_run() {
-    let mut headless = support::Blocks.open("dam-break").unwrap().simulation;
+    let mut headless = support::Blocks
+        .open("dam-break", &vec![])
+        .unwrap()
+        .simulation;
     let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
     solver.order(Order::Fields(vec![Field::Velocity]));
     solver.order(Order::Speed(8.0));
-    solver.order(Order::Open("dam-break".into()));
+    solver.order(Order::Open("dam-break".into(), vec![]));
     let mut checked = 0;
     let mut frame = 0;
     while checked < 3 {
@@ -356,7 +390,7 @@ fn a_scene_left_alone_has_the_same_bits_as_a_headless_run() {
 fn pause_stops_the_clock_and_a_substep_is_one_substep() {
     let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
     solver.order(Order::Pause(true));
-    solver.order(Order::Open("dam-break".into()));
+    solver.order(Order::Open("dam-break".into(), vec![]));
     let start = wait(&mut solver, |shown| shown.condition == Condition::Paused);
     assert_eq!(start.readouts.substeps, 0);
     for substeps in 1..=3 {
@@ -375,7 +409,7 @@ fn pause_stops_the_clock_and_a_substep_is_one_substep() {
 fn never_faster_than_real_time_times_speed() {
     let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
     solver.order(Order::Speed(0.1));
-    solver.order(Order::Open("dam-break".into()));
+    solver.order(Order::Open("dam-break".into(), vec![]));
     wait(&mut solver, |shown| shown.condition == Condition::Running);
     let start = Instant::now();
     let shown = wait(&mut solver, |shown| shown.readouts.time >= 0.045);
@@ -391,14 +425,14 @@ fn never_faster_than_real_time_times_speed() {
 #[test]
 fn a_scene_that_cannot_be_opened_is_said_and_the_next_one_opens() {
     let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
-    solver.order(Order::Open("broken".into()));
+    solver.order(Order::Open("broken".into(), vec![]));
     let shown = wait(&mut solver, |shown| {
         matches!(shown.condition, Condition::Failed(_))
     });
     let mut state = AppState::new(support::Blocks.list(), DEFAULT_SCENE, None);
     state.receive(shown);
     assert_eq!(state.failure(), Some("line 3: gravity: expected numbers"));
-    solver.order(Order::Open("dam-break".into()));
+    solver.order(Order::Open("dam-break".into(), vec![]));
     wait(&mut solver, |shown| shown.condition == Condition::Running);
 }
 
@@ -409,9 +443,26 @@ fn scenes_that_ship_open_with_a_colour_for_every_body() {
     assert_eq!(list[0].name, DEFAULT_SCENE);
     for card in list {
         // Small: what is tested is the window's side of it.
-        let stage = shelf.open(&card.name).unwrap_or_else(|why| panic!("{why}"));
+        let stage = shelf
+            .open(&card.name, &vec![])
+            .unwrap_or_else(|why| panic!("{why}"));
         assert_eq!(stage.simulation.dimension(), card.dimension);
         assert!(!stage.swatches.is_empty());
+        let has = |key: &str| stage.settings.iter().any(|setting| setting.key == key);
+        assert!(
+            has("dx") && has("transfer") && has("kernel"),
+            "{:?}",
+            stage.settings
+        );
+        let material = format!("materials.{}.density", stage.simulation.materials()[0]);
+        assert!(has(&material), "{:?}", stage.settings);
+        // What is offered is accepted, unchanged.
+        let all: Vec<_> = (stage.settings.iter())
+            .map(|setting| (setting.key.clone(), setting.value.to_toml()))
+            .collect();
+        shelf
+            .open(&card.name, &all)
+            .unwrap_or_else(|why| panic!("{why}"));
         assert!(
             stage
                 .body_swatches
@@ -419,7 +470,7 @@ fn scenes_that_ship_open_with_a_colour_for_every_body() {
                 .all(|&i| i < stage.swatches.len())
         );
     }
-    assert!(shelf.open("no-such-scene").is_err());
+    assert!(shelf.open("no-such-scene", &vec![]).is_err());
 }
 
 mod drawn {

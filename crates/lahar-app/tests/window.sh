@@ -14,7 +14,6 @@ unset WAYLAND_DISPLAY
 here=$(pwd)
 
 # A screen with a number that nobody has.
-exec 3> >(:)
 coproc SCREEN { exec Xvfb -displayfd 1 -screen 0 1280x800x24 -nolisten tcp 2>"$out/xvfb.log"; }
 read -r number <&"${SCREEN[0]}"
 export DISPLAY=:$number
@@ -43,44 +42,63 @@ done
 xdotool windowactivate --sync "$window"
 
 picture() { import -window "$window" "$out/$1.png" && echo "$out/$1.png"; }
-press() { xdotool key --window 0 "$1" 2>/dev/null || xdotool key "$1"; sleep "${2:-0.5}"; }
+press() { xdotool key "$1"; sleep "${2:-0.4}"; }
 
-sleep "${WAIT:-1.5}"
+# Longer on slow machines: a factor on every wait.
+slow=${SLOW:-1}
+rest() { sleep "$(awk "BEGIN { print $1 * $slow }")"; }
+
+rest 1.5
 picture 01-start
 press h 0.2
-sleep 1
-press r 0.8
+rest 1
+press r
+rest 0.8
 picture 02-after-r
-press 2 2
-picture 03-key-2
-press c 1
-picture 04-speed
-press a 0.7
-picture 05-gravity-left
-xdotool mousemove --window "$window" 800 350 mousedown 1
-sleep 0.8
-picture 06-attract
-xdotool mouseup 1
-press "${SOLID:-3}" 2
-picture 07-solid
+press 2
+rest 3
+picture 03-key-2-in-3d
 xdotool mousemove --window "$window" 700 350 mousedown 1
 for _ in 1 2 3 4 5 6 7 8; do xdotool mousemove_relative -- 25 -8; sleep 0.08; done
 xdotool mouseup 1
 xdotool click 4 click 4
-press c 1
-picture 08-orbit
-press l 0.6
-picture 09-list
-press Escape 0.4
-press h 0.4
-press p 0.6
-picture 10-no-panel
-press F12 1.5
-picture 11-f12
-press shift+r 1.5
-press space 0.5
-picture 12-default-paused
-press Escape 1
+press c
+rest 1
+picture 04-orbit-speed
+xdotool keydown shift mousemove --window "$window" 700 450 mousedown 1
+rest 1
+picture 05-shift-attracts
+xdotool mouseup 1 keyup shift
+press 4
+rest 3
+picture 06-key-4
+press c
+rest 0.5
+picture 07-pressure
+press a
+rest 2
+picture 08-gravity-left
+xdotool mousemove --window "$window" 800 350 mousedown 1
+rest 1.5
+picture 09-attract
+xdotool mouseup 1
+press l
+rest 0.6
+picture 10-list
+press Escape
+press h
+press p
+rest 0.6
+picture 11-no-panel
+press F12
+rest 1.5
+picture 12-f12
+press shift+r
+rest 1.5
+press space
+picture 13-default-paused
+press Escape
+rest 1
 if kill -0 "$app" 2>/dev/null; then
     echo "Esc did not close the window"
     exit 1

@@ -5,7 +5,9 @@ use lahar::{
     Contact, Domain, Isa, Material, Model, ParticleBatch, Setup, Sides, Simulate, Simulation,
     WallStyle,
 };
-use lahar_app::scenes::{Angle, Look, SceneCard, SceneSource, Stage, Swatch};
+use lahar_app::scenes::{
+    Angle, Changes, Look, SceneCard, SceneSource, Setting, SettingValue, Stage, Swatch,
+};
 
 /// Two blocks of water in 2D, one in 3D, and a scene that cannot be opened.
 pub(crate) struct Blocks;
@@ -27,7 +29,7 @@ impl SceneSource for Blocks {
         .to_vec()
     }
 
-    fn open(&self, name: &str) -> Result<Stage, String> {
+    fn open(&self, name: &str, _changes: &Changes) -> Result<Stage, String> {
         let card = self.list().into_iter().find(|card| card.name == name);
         let card = card.ok_or_else(|| format!("no scene \"{name}\""))?;
         let simulation: Box<dyn Simulate> = match name {
@@ -47,6 +49,12 @@ impl SceneSource for Blocks {
             }],
             body_swatches: vec![0],
             angle: Angle::default(),
+            settings: vec![Setting {
+                key: "materials.water.viscosity".into(),
+                group: "water".into(),
+                name: "viscosity".into(),
+                value: SettingValue::Number(1.0e-3),
+            }],
             warnings: vec![],
         })
     }
