@@ -62,7 +62,7 @@ impl SceneSource for Blocks {
 
 fn blocks<const D: usize>(corners: &[[f64; D]], edge: f64) -> Result<Simulation<f32, D>, String>
 where
-    Simulation<f32, D>: Simulate,
+    f32: lahar::Instance<D>,
 {
     let dx = if D == 2 { 0.02 } else { 0.05 };
     let water = Material {

@@ -142,7 +142,7 @@ impl Check<'_> {
         );
         let available = || {
             section.keys().filter(|key| {
-                !matches!(key.kind, Kind::Later) && !(key.only_3d && self.dimension == 2)
+                !(matches!(key.kind, Kind::Later) || key.only_3d && self.dimension == 2)
             })
         };
         if let Some(places) = places(&entry.key, section) {

@@ -228,7 +228,8 @@ fn advance_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     let mut result = largest.lane(0);
     for lane in 1..T::WIDTH {
         let x = largest.lane(lane);
-        if !(result >= x) {
+        // Not a number wins.
+        if x > result || x.to_f64().is_nan() {
             result = x;
         }
     }

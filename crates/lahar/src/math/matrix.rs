@@ -115,7 +115,7 @@ impl<R: Real, const D: usize> Add for Matrix<R, D> {
     #[inline(always)]
     fn add(mut self, other: Self) -> Self {
         for j in 0..D {
-            self.0[j] = self.0[j] + other.0[j];
+            self.0[j] += other.0[j];
         }
         self
     }
@@ -125,7 +125,7 @@ impl<R: Real, const D: usize> Sub for Matrix<R, D> {
     #[inline(always)]
     fn sub(mut self, other: Self) -> Self {
         for j in 0..D {
-            self.0[j] = self.0[j] - other.0[j];
+            self.0[j] -= other.0[j];
         }
         self
     }

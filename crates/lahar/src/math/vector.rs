@@ -59,7 +59,7 @@ impl<R: Real, const D: usize> Add for Vector<R, D> {
     #[inline(always)]
     fn add(mut self, other: Self) -> Self {
         for i in 0..D {
-            self[i] = self[i] + other[i];
+            self[i] += other[i];
         }
         self
     }
@@ -69,7 +69,7 @@ impl<R: Real, const D: usize> Sub for Vector<R, D> {
     #[inline(always)]
     fn sub(mut self, other: Self) -> Self {
         for i in 0..D {
-            self[i] = self[i] - other[i];
+            self[i] -= other[i];
         }
         self
     }

@@ -285,24 +285,21 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
             }
         }
 
-        // One number that is not finite if any is: x − x is 0 or not a number.
+        // x times zero is zero, or not a number if x is not finite.
         let mut largest = zero;
         let mut check = zero;
         for axis in 0..D {
             largest = largest.max(step[axis].abs());
-            check = check + (step[axis] - step[axis]) + (new_v[axis] - new_v[axis]);
-        }
-        for column in increment.0 {
-            for axis in 0..D {
-                check = check + (column[axis] - column[axis]);
+            check += (step[axis] + new_v[axis]) * zero;
+            for i in 0..D {
+                check += increment[(i, axis)] * zero;
             }
         }
-        let good = check.le(zero) & largest.le(zero.lit(MOST_CELLS));
+        let good = check.ge(zero) & largest.le(zero.lit(MOST_CELLS));
         if !good.all() {
             for lane in 0..left.min(T::WIDTH) {
-                let bad = !(check.lane(lane) <= T::default())
-                    || largest.lane(lane) > T::from_f64(MOST_CELLS);
-                if bad {
+                let whole = check.lane(lane) >= T::default();
+                if !whole || largest.lane(lane) > T::from_f64(MOST_CELLS) {
                     failed = failed.or(Some(start + p + lane));
                     failures += 1;
                 }

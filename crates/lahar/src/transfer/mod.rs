@@ -109,7 +109,6 @@ macro_rules! with_scheme {
         let split = $scheme.planes() == 2;
         macro_rules! instance {
             ($kernel:ty, $s:literal, $c:literal, $on:ident $level:tt) => {{
-                #[expect(clippy::items_after_statements, reason = "names for the body")]
                 type $K = $kernel;
                 const $SPLIT: bool = $s;
                 const $CLASSIC: bool = $c;

@@ -1,5 +1,4 @@
 //! Scenes that several tests run.
-#![expect(dead_code, reason = "each test program uses a part")]
 
 use lahar::material::{Corotated, Dust, Eos, Fluid, JacobianUpdate, NeoHookean, Snow, lame};
 use lahar::particles::{Data, Field, Snapshot};
