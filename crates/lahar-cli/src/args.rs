@@ -31,7 +31,7 @@ impl Args {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Open the window on a scene, or replay a finished run
+    /// Open the window on a scene
     View(View),
     /// Run a scene without a window and write what it comes to
     Run(Run),
@@ -86,7 +86,7 @@ pub(crate) struct Run {
     #[arg(long, value_name = "N", conflicts_with = "until")]
     pub(crate) frames: Option<u64>,
 
-    /// Run to this simulated time [s], to the end of the frame it is in
+    /// Run to this simulated time in seconds, to the end of the frame it is in
     #[arg(long, value_name = "T", value_parser = positive)]
     pub(crate) until: Option<f64>,
 

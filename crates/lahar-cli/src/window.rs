@@ -43,6 +43,9 @@ fn open_window(scene: Option<&str>) -> Result<(), String> {
         scene: scene.map(str::to_owned),
         ..lahar_app::Options::default()
     };
+    if lahar_app::check_display().is_ok() {
+        terminal::note(&lahar_app::key_help());
+    }
     lahar_app::run(options).map_err(|error| error.to_string())
 }
 

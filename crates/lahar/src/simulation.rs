@@ -303,7 +303,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             let gradient = match &batch.deformation {
                 Deformation::Rest => None,
                 Deformation::Jacobian(j) => {
-                    let stretch = j[i].powf(1.0 / D as f64);
+                    let stretch = libm::pow(j[i], 1.0 / D as f64);
                     Some(core::array::from_fn(|a| {
                         core::array::from_fn(|b| if a == b { stretch } else { 0.0 })
                     }))

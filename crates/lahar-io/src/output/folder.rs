@@ -59,7 +59,7 @@ impl RunFolder {
             if !overwrite {
                 return Err(OutputError::usage(
                     path,
-                    "there is a run in this folder already; go on with it by `lahar resume`, or replace it with `--overwrite`",
+                    "there is a run in this folder already; replace it with `--overwrite`, or choose another folder (`lahar resume`, to go on with a run, is not there yet)",
                 ));
             }
             for own in OWN {
