@@ -1051,7 +1051,7 @@ pub(crate) static OUTPUT: Section = Section {
             Kind::Integer(0, 1_000_000_000),
             "frames",
             Value("0"),
-            "Write a checkpoint every so many frames; 0: none.",
+            "For checkpoints, which this version does not write yet; 0: none.",
         ),
         key(
             "picture_size",
