@@ -7,7 +7,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// The default scene, coarse enough for a test.
-const COARSE: [&str; 4] = ["dam-break", "--set", "dx=0.0625", "--threads=1"];
+const COARSE: [&str; 4] = ["dam-break", "--set", "dx=0.05", "--threads=1"];
 
 fn lahar(folder: &Path, words: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_lahar"))
@@ -215,7 +215,7 @@ fn the_same_run_gives_the_same_files() {
             "run",
             "dam-break",
             "--set",
-            "dx=0.0625",
+            "dx=0.05",
             threads,
             "--frames=4",
             "--format=npz",

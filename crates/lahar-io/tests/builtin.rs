@@ -38,7 +38,7 @@ fn every_scene_reads_and_builds() {
 fn the_default_scene_comes_first() {
     assert_eq!(builtin::list()[0].name, "dam-break");
     let scene = Scene::load("dam-break", &[]).unwrap();
-    assert!((20_000.0..40_000.0).contains(&scene.expected_particles()));
+    assert!((10_000.0..40_000.0).contains(&scene.expected_particles()));
 }
 
 #[test]
