@@ -13,7 +13,7 @@ use lahar::math::{Lanes, Mask, Matrix, Polar, Real, Svd, Vector, polar, svd};
 use std::hint::black_box;
 
 /// Matrices of each kind, over all dimensions and precisions.
-const SAMPLES: usize = 1 << 20;
+const SAMPLES: usize = 1 << 22;
 /// Matrices worked at a time: a whole number of lane values of every type.
 const BATCH: usize = 16;
 

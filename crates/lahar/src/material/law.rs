@@ -73,6 +73,45 @@ pub(crate) fn built_in<T: Lanes, const D: usize>(model: &Model) -> Box<dyn Law<T
 }
 
 /// The law of any model, your own included; see [`crate::Simulation::with_laws`].
+///
+/// ```
+/// use lahar::material::{ConstitutiveModel, Dilatation, Dust, law};
+/// use lahar::math::{Matrix, Real};
+/// use lahar::{Material, Model, ParticleBatch, Setup, Simulate, Simulation};
+///
+/// /// A gas: p = K/J.
+/// #[derive(Clone, Copy)]
+/// struct Gas {
+///     /// Bulk modulus at rest [Pa].
+///     modulus: f64,
+/// }
+///
+/// impl<const D: usize> ConstitutiveModel<D> for Gas {
+///     type Strain<R: Real> = Dilatation<R>;
+///     fn kirchhoff_stress<R: Real>(&self, strain: Dilatation<R>, _: Matrix<R, D>) -> Matrix<R, D> {
+///         Matrix::scaled_identity(strain.jacobian_minus_one.lit(-self.modulus)) // τ = −J p I
+///     }
+///     fn advance<R: Real>(&self, strain: Dilatation<R>, increment: Matrix<R, D>) -> Dilatation<R> {
+///         let e = strain.jacobian_minus_one;
+///         Dilatation { jacobian_minus_one: e + increment.trace() * (e + e.one()) }
+///     }
+///     fn energy_density<R: Real>(&self, strain: Dilatation<R>) -> R {
+///         -(strain.jacobian_minus_one + strain.jacobian_minus_one.one()).ln() * strain.jacobian_minus_one.lit(self.modulus)
+///     }
+///     fn wave_modulus<R: Real>(&self, strain: Dilatation<R>) -> R {
+///         strain.jacobian_minus_one.lit(self.modulus)
+///     }
+/// }
+///
+/// // The model named in the setup is not used: the law given with it takes its place.
+/// let material = Material { name: "gas".into(), density: 1.2, model: Model::Dust(Dust) };
+/// let puff = ParticleBatch { position: vec![[0.0, 0.0]], volume: vec![0.01], ..Default::default() };
+/// let mut simulation =
+///     Simulation::<f32, 2>::with_laws(Setup::new(0.2, vec![material]), vec![law(Gas { modulus: 100.0 })], &[puff])?;
+/// simulation.advance_to(0.01)?;
+/// assert!(simulation.diagnostics().particle_volume > 0.01, "gas expands");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn law<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static>(
     model: M,
 ) -> Box<dyn Law<T, D>> {
