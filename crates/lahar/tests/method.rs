@@ -162,6 +162,56 @@ const KNOWN_MISSES: &[KnownMiss] = &[
         target: 1e-5,
         best: 1.2e-5,
     },
+    KnownMiss {
+        what: "K4 Stretching FLIP 0.99 Cubic Classic cfl 0.5 staggered",
+        target: 1e-2,
+        best: 1.447e-02,
+    },
+    KnownMiss {
+        what: "K4 Stretching FLIP 0.99 Cubic Mls cfl 0.5 staggered",
+        target: 1e-2,
+        best: 1.517e-02,
+    },
+    KnownMiss {
+        what: "K4 Stretching FLIP 1 Cubic Classic cfl 0.1 staggered",
+        target: 1e-2,
+        best: 4.011e-02,
+    },
+    KnownMiss {
+        what: "K4 Stretching FLIP 1 Cubic Classic cfl 0.5 staggered",
+        target: 1e-2,
+        best: 2.087e-02,
+    },
+    KnownMiss {
+        what: "K4 Stretching FLIP 1 Cubic Mls cfl 0.1 staggered",
+        target: 1e-2,
+        best: 4.038e-02,
+    },
+    KnownMiss {
+        what: "K4 Stretching FLIP 1 Cubic Mls cfl 0.5 staggered",
+        target: 1e-2,
+        best: 2.156e-02,
+    },
+    KnownMiss {
+        what: "K4 Stretching FLIP 1 Quadratic Classic cfl 0.1 staggered",
+        target: 1e-2,
+        best: 2.521e-02,
+    },
+    KnownMiss {
+        what: "K4 Stretching FLIP 1 Quadratic Classic cfl 0.5 staggered",
+        target: 1e-2,
+        best: 1.106e-02,
+    },
+    KnownMiss {
+        what: "K4 Stretching FLIP 1 Quadratic Mls cfl 0.1 staggered",
+        target: 1e-2,
+        best: 2.600e-02,
+    },
+    KnownMiss {
+        what: "K4 Stretching FLIP 1 Quadratic Mls cfl 0.5 staggered",
+        target: 1e-2,
+        best: 1.221e-02,
+    },
 ];
 
 struct KnownMiss {
@@ -552,7 +602,11 @@ fn k4_energy_flip<E: Engine<2>>(start: Start) {
                 by_particles,
                 limit,
             );
-            report(&format!("{name} staggered"), excess(&energies.staggered));
+            at_most(
+                &format!("{name} staggered"),
+                excess(&energies.staggered),
+                1e-2,
+            );
             report(&format!("{name} particles"), excess(&energies.of_particles));
         }
     }
