@@ -185,6 +185,7 @@ impl Check<'_> {
         };
         match (kind, &mut node.value) {
             (Kind::Text, Value::Text(_)) => Ok(()),
+            (Kind::Flag, Value::Flag(_)) => Ok(()),
             (Kind::Color, Value::Text(text)) if color(text).is_some() => Ok(()),
             (Kind::Number(bound), value) => match value.as_number() {
                 Some(number) if bound.holds(number) => Ok(()),
@@ -488,6 +489,7 @@ pub(crate) fn accepts(kind: Kind, value: &Value) -> bool {
     match kind {
         Kind::Text | Kind::Color | Kind::Word(_) => matches!(value, Value::Text(_)),
         Kind::Number(_) => matches!(value, Value::Number(_) | Value::Integer(_)),
+        Kind::Flag => matches!(value, Value::Flag(_)),
         Kind::Integer(..) => matches!(value, Value::Integer(_)),
         Kind::Table(_) | Kind::Materials => matches!(value, Value::Table(_)),
         _ => matches!(value, Value::List(_)),

@@ -55,6 +55,8 @@ pub(crate) enum Kind {
     /// "#rrggbb".
     Color,
     Number(Bound),
+    /// true or false.
+    Flag,
     /// A whole number from .. to ..
     Integer(i64, i64),
     /// D numbers.
@@ -126,6 +128,7 @@ impl Kind {
             Self::Text => "text in quotes".to_owned(),
             Self::Color => "a colour like \"#3d9be9\"".to_owned(),
             Self::Number(bound) => bound.words().to_owned(),
+            Self::Flag => "true or false".to_owned(),
             Self::Integer(0, i64::MAX) => "a whole number, 0 or above".to_owned(),
             Self::Integer(low, i64::MAX) => format!("a whole number, {low} or above"),
             Self::Integer(low, high) => format!("a whole number from {low} to {high}"),
@@ -215,6 +218,9 @@ pub(crate) const SECTIONS: &[&Section] = &[
     &HALF_SPACE,
     &POLYGON,
     &CAMERA,
+    &CONTROLS,
+    &GRAVITY_KEYS,
+    &HAND,
     &OUTPUT,
 ];
 
@@ -361,6 +367,13 @@ pub(crate) static SCENE: Section = Section {
             "",
             Value("{}"),
             "How the window and pictures look at the scene.",
+        ),
+        key(
+            "controls",
+            Kind::Table(&CONTROLS),
+            "",
+            Value("{}"),
+            "What keys and mouse do in the window.",
         ),
         key(
             "output",
@@ -1017,6 +1030,76 @@ pub(crate) static CAMERA: Section = Section {
             "",
             Value("\"material\""),
             "What colours say.",
+        ),
+    ]],
+};
+
+pub(crate) static CONTROLS: Section = Section {
+    name: "controls",
+    header: "[controls]",
+    keys: &[&[
+        key(
+            "speed",
+            Kind::Number(Bound::Positive),
+            "",
+            Value("1.0"),
+            "Simulated seconds a second at first, at most; + and - change it.",
+        ),
+        key(
+            "gravity_keys",
+            Kind::Table(&GRAVITY_KEYS),
+            "",
+            Value("{}"),
+            "What W, A, S, D and the arrows do to gravity.",
+        ),
+        key(
+            "pointer",
+            Kind::Table(&HAND),
+            "",
+            Value("{}"),
+            "How the mouse attracts and repels.",
+        ),
+    ]],
+};
+
+pub(crate) static GRAVITY_KEYS: Section = Section {
+    name: "gravity_keys",
+    header: "gravity_keys = { .. } in [controls]",
+    keys: &[&[
+        key(
+            "strength",
+            Kind::Number(Bound::Positive),
+            "m/s²",
+            Words("that of `gravity`; 9.81 where there is none"),
+            "Size of gravity towards the key's side.",
+        ),
+        key(
+            "hold",
+            Kind::Flag,
+            "",
+            Value("false"),
+            "Whether it acts while the key is held, and none after; else it stays.",
+        ),
+    ]],
+};
+
+pub(crate) static HAND: Section = Section {
+    name: "pointer",
+    header: "pointer = { .. } in [controls]",
+    keys: &[&[
+        key(
+            "strength",
+            Kind::Number(Bound::Positive),
+            "m/s²",
+            Words("10/3 of the size of gravity"),
+            "Acceleration towards the pointer, or away from it.",
+        ),
+        key(
+            "radius",
+            Kind::OneOf(&[Kind::Number(Bound::Positive), Kind::Word(&["everywhere"])]),
+            "m",
+            Words("a quarter of the scene's smallest extent"),
+            "How far it reaches; `\"everywhere\"`: as hard at any distance.",
         ),
     ]],
 };

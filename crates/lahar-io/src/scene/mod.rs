@@ -20,6 +20,8 @@
 
 mod build;
 mod check;
+mod comparison;
+mod controls;
 mod document;
 mod keys;
 mod plan;
@@ -29,6 +31,8 @@ mod reference;
 #[cfg(test)]
 mod tests;
 
+pub use comparison::Comparison;
+pub use controls::Controls;
 pub(crate) use document::shorten;
 pub use reference::{docs, docs_of, schema};
 
@@ -162,6 +166,8 @@ pub struct Scene {
     pub bodies: Vec<BodyInfo>,
     /// How to look at it.
     pub camera: Camera,
+    /// What keys and mouse do in the window.
+    pub controls: Controls,
     /// What to write.
     pub output: OutputPlan,
     /// What is suspicious about it.
@@ -532,6 +538,7 @@ fn scene<const D: usize>(
         materials,
         bodies,
         camera: read_camera(&reader, &plan)?,
+        controls: controls::read_controls(&reader)?,
         output: read_output(&reader)?,
         warnings: plan.warnings.clone(),
         document: document.clone(),

@@ -71,6 +71,13 @@ impl<'a> Reader<'a> {
         self.required(key, self.opt_number(key))
     }
 
+    pub(crate) fn opt_flag(&self, key: &str) -> Option<bool> {
+        match self.table.get(key)?.value {
+            Value::Flag(flag) => Some(flag),
+            _ => None,
+        }
+    }
+
     pub(crate) fn opt_integer(&self, key: &str) -> Option<u64> {
         match self.table.get(key)?.value {
             Value::Integer(number) => u64::try_from(number).ok(),

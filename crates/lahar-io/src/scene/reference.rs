@@ -73,6 +73,7 @@ fn value_of(kind: Kind) -> Value {
         Kind::Text => json!({ "type": "string" }),
         Kind::Color => json!({ "type": "string", "pattern": "^#[0-9a-fA-F]{6}$" }),
         Kind::Number(bound) => number(bound),
+        Kind::Flag => json!({ "type": "boolean" }),
         Kind::Integer(low, i64::MAX) => json!({ "type": "integer", "minimum": low }),
         Kind::Integer(low, high) => json!({ "type": "integer", "minimum": low, "maximum": high }),
         Kind::Vector => vector,
