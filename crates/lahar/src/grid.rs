@@ -306,12 +306,15 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
                 continue;
             }
             let per_mass = T::from_f64(1.0) / mass;
-            let before = Vector::<T, D>::from_fn(|axis| quad[axis] * per_mass);
-            let mut velocity = before;
+            let sums = Vector::<T, D>::from_fn(|axis| quad[axis]);
+            let before = sums * per_mass;
+            // Forces act on momentum, and then comes one division: added to velocities, gravity's impulse
+            // would round the same way on every node of a body that moves as one.
+            let mut impulses = forces.gravity_impulse * mass;
             if self.planes == 2 {
-                velocity += Vector::from_fn(|axis| impulse[index * QUAD + axis] * per_mass);
+                impulses += Vector::from_fn(|axis| impulse[index * QUAD + axis]);
             }
-            velocity += forces.gravity_impulse;
+            let mut velocity = (sums + impulses) * per_mass;
             if walled || forces.pointer.is_some() {
                 let node =
                     core::array::from_fn(|axis| first[axis] + axis_index::<D>(index, axis) as i64);

@@ -129,6 +129,11 @@ impl<const D: usize> Reference<D> {
         self.law(particle).displacement_gradient(&particle.strain)
     }
 
+    /// J_P of a particle, 1 for models without plastic flow.
+    pub fn plastic_jacobian(&self, particle: &Particle<D>) -> f64 {
+        self.law(particle).plastic_jacobian(&particle.strain)
+    }
+
     /// J − 1 of a particle.
     pub fn jacobian_minus_one(&self, particle: &Particle<D>) -> f64 {
         self.law(particle).jacobian_minus_one(&particle.strain)
@@ -468,9 +473,10 @@ fn outer<const D: usize>(a: Vector<f64, D>, b: Vector<f64, D>) -> Matrix<f64, D>
 
 /// A [`ConstitutiveModel`] in one `f64` a number, whatever it keeps as strain being columns.
 trait Law<const D: usize> {
-    fn strain_of(&self, displacement_gradient: Matrix<f64, D>) -> Vec<f64>;
+    fn strain_of(&self, displacement_gradient: Matrix<f64, D>, plastic: f64) -> Vec<f64>;
     fn displacement_gradient(&self, strain: &[f64]) -> Matrix<f64, D>;
     fn jacobian_minus_one(&self, strain: &[f64]) -> f64;
+    fn plastic_jacobian(&self, strain: &[f64]) -> f64;
     fn kirchhoff_stress(&self, strain: &[f64], gradient: Matrix<f64, D>) -> Matrix<f64, D>;
     fn advance(&self, strain: &[f64], increment: Matrix<f64, D>) -> Vec<f64>;
     fn energy_density(&self, strain: &[f64]) -> f64;
@@ -481,14 +487,18 @@ fn law<const D: usize>(model: &Model) -> &dyn Law<D> {
 }
 
 impl<M: ConstitutiveModel<D>, const D: usize> Law<D> for M {
-    fn strain_of(&self, displacement_gradient: Matrix<f64, D>) -> Vec<f64> {
-        columns(M::Strain::from_displacement_gradient(displacement_gradient))
+    fn strain_of(&self, displacement_gradient: Matrix<f64, D>, plastic: f64) -> Vec<f64> {
+        let strain = M::Strain::from_displacement_gradient(displacement_gradient);
+        columns(strain.with_plastic_jacobian_minus_one(plastic))
     }
     fn displacement_gradient(&self, strain: &[f64]) -> Matrix<f64, D> {
         M::Strain::read(|column| strain[column]).displacement_gradient()
     }
     fn jacobian_minus_one(&self, strain: &[f64]) -> f64 {
         M::Strain::read(|column| strain[column]).jacobian_minus_one()
+    }
+    fn plastic_jacobian(&self, strain: &[f64]) -> f64 {
+        1.0 + M::Strain::read(|column| strain[column]).plastic_jacobian_minus_one()
     }
     fn kirchhoff_stress(&self, strain: &[f64], gradient: Matrix<f64, D>) -> Matrix<f64, D> {
         self.kirchhoff_stress(M::Strain::read(|column| strain[column]), gradient)
@@ -530,6 +540,7 @@ fn take_in<const D: usize>(
     one_each("batch.volume", batch.volume.len(), &[1])?;
     one_each("batch.mass", batch.mass.len(), &[0, 1])?;
     one_each("batch.affine", batch.affine.len(), &[0])?;
+    one_each("batch.plastic_jacobian", batch.plastic_jacobian.len(), &[0])?;
     match &batch.deformation {
         Deformation::Rest => {}
         Deformation::Jacobian(j) => one_each("batch.deformation", j.len(), &[])?,
@@ -572,7 +583,7 @@ fn take_in<const D: usize>(
             position: Vector(position),
             velocity: Vector(velocity.copied().unwrap_or([0.0; D])),
             affine: Matrix::from_fn(|row, column| affine.map_or(0.0, |c| c[row][column])),
-            strain: law.strain_of(h),
+            strain: law.strain_of(h, batch.plastic_jacobian.get(i).map_or(0.0, |j| j - 1.0)),
         });
     }
     Ok(())

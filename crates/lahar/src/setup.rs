@@ -166,6 +166,8 @@ pub struct ParticleBatch<const D: usize> {
     pub affine: Vec<[[f64; D]; D]>,
     /// Deformation at the start.
     pub deformation: Deformation<D>,
+    /// J_P of models with plastic flow: none (1), or one a particle. Other models do not read it.
+    pub plastic_jacobian: Vec<f64>,
 }
 
 /// How particles are deformed at the start.

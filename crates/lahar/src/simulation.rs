@@ -319,12 +319,14 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                     head[Layout::affine(D) + axis * D + row].push(T::from_f64(c));
                 }
             }
-            match gradient {
+            let plastic_jacobian = batch.plastic_jacobian.get(i).copied();
+            let identity = || core::array::from_fn(|a| core::array::from_fn(|b| f64::from(a == b)));
+            match gradient.or_else(|| plastic_jacobian.map(|_| identity())) {
                 None => strain
                     .iter_mut()
                     .for_each(|column| column.push(T::default())),
                 Some(f) => {
-                    let start = group.law.start(f);
+                    let start = group.law.start(f, plastic_jacobian.unwrap_or(1.0));
                     strain
                         .iter_mut()
                         .zip(start)
@@ -611,6 +613,12 @@ fn check_batch<const D: usize>(
         ("volume", batch.volume.len(), false, true),
         ("mass", batch.mass.len(), true, true),
         ("affine", batch.affine.len(), true, false),
+        (
+            "plastic_jacobian",
+            batch.plastic_jacobian.len(),
+            true,
+            false,
+        ),
     ];
     for (key, len, may_be_empty, may_be_one) in lengths {
         if len != count && !(len == 0 && may_be_empty) && !(len == 1 && may_be_one) && count > 0 {
@@ -628,7 +636,12 @@ fn check_batch<const D: usize>(
             format!("{deformed} values for {count} particles"),
         );
     }
-    for (key, values) in [("volume", &batch.volume), ("mass", &batch.mass)] {
+    let positive = [
+        ("volume", &batch.volume),
+        ("mass", &batch.mass),
+        ("plastic_jacobian", &batch.plastic_jacobian),
+    ];
+    for (key, values) in positive {
         if let Some(i) = values.iter().position(|&x| !(x > 0.0 && x.is_finite())) {
             return setup_error(
                 key,

@@ -61,8 +61,8 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
     fn wave_modulus(&self, strain: &[Vec<T>], count: usize) -> f64;
     /// Viscosity for the time step \[Pa s\].
     fn viscosity(&self) -> f64;
-    /// Strain columns for a particle that starts with the deformation gradient `f`.
-    fn start(&self, f: [[f64; D]; D]) -> Vec<f64>;
+    /// Strain columns for a particle that starts with the deformation gradient `f` and J_P.
+    fn start(&self, f: [[f64; D]; D], plastic_jacobian: f64) -> Vec<f64>;
     /// What the columns mean.
     fn describe(&self, strain: &[f64], velocity_gradient: [[f64; D]; D]) -> ParticleState<D>;
 }
@@ -187,9 +187,10 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D>> Law<T, D> for Compiled<M
         self.0.viscosity()
     }
 
-    fn start(&self, f: [[f64; D]; D]) -> Vec<f64> {
+    fn start(&self, f: [[f64; D]; D], plastic_jacobian: f64) -> Vec<f64> {
         let h = Matrix::from_fn(|i, j| f[i][j] - if i == j { 1.0 } else { 0.0 });
-        let strain = M::Strain::<f64>::from_displacement_gradient(h);
+        let strain = M::Strain::<f64>::from_displacement_gradient(h)
+            .with_plastic_jacobian_minus_one(plastic_jacobian - 1.0);
         let mut columns = vec![0.0; <M::Strain<f64> as Strain<f64, D>>::COLUMNS];
         strain.write(|column, value| columns[column] = value);
         columns

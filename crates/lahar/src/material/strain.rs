@@ -18,6 +18,11 @@ pub trait Strain<R: Real, const D: usize>: Copy {
     fn write(&self, column: impl FnMut(usize, R));
     /// The strain of the deformation gradient I + H, as little of it as this one keeps.
     fn from_displacement_gradient(h: Matrix<R, D>) -> Self;
+    /// This strain after plastic flow by J_P; for models without any, this strain.
+    #[inline(always)]
+    fn with_plastic_jacobian_minus_one(self, _plastic: R) -> Self {
+        self
+    }
     /// H = F − I; for strains that keep J only, (J^(1/D) − 1) I, and −I for J < 0.
     fn displacement_gradient(&self) -> Matrix<R, D>;
     /// J − 1.
@@ -190,6 +195,14 @@ impl<R: Real, const D: usize> Strain<R, D> for PlasticGradient<R, D> {
             h,
             plastic_jacobian_minus_one: zero,
             hardening_jacobian_minus_one: zero,
+        }
+    }
+    #[inline(always)]
+    fn with_plastic_jacobian_minus_one(self, plastic: R) -> Self {
+        Self {
+            plastic_jacobian_minus_one: plastic,
+            hardening_jacobian_minus_one: plastic,
+            ..self
         }
     }
     #[inline(always)]

@@ -29,6 +29,8 @@ pub(crate) struct State<const D: usize> {
     pub(crate) deformation_gradient: [[f64; D]; D],
     /// J − 1.
     pub(crate) jacobian_minus_one: f64,
+    /// J_P.
+    pub(crate) plastic_jacobian: f64,
 }
 
 /// What steps a scene.
@@ -88,13 +90,14 @@ impl<const D: usize> Engine<D> for Oracle<D> {
                 self.reference.displacement_gradient(p) + Matrix::identity(1.0),
             ),
             jacobian_minus_one: self.reference.jacobian_minus_one(p),
+            plastic_jacobian: self.reference.plastic_jacobian(p),
         };
         self.reference.particles().iter().map(state).collect()
     }
 }
 
 /// The oracle in the state that an engine shows, for its totals. A model that keeps only J gets F
-/// of that J; a plastic one starts unyielded.
+/// of that J.
 pub(crate) fn oracle_of<const D: usize>(setup: &Setup<D>, particles: &[State<D>]) -> Reference<D> {
     let batch = |p: &State<D>| ParticleBatch {
         material: p.material,
@@ -105,6 +108,7 @@ pub(crate) fn oracle_of<const D: usize>(setup: &Setup<D>, particles: &[State<D>]
         mass: vec![p.mass],
         affine: vec![p.affine],
         deformation: Deformation::Gradient(vec![p.deformation_gradient]),
+        plastic_jacobian: vec![p.plastic_jacobian],
     };
     let batches: Vec<_> = particles.iter().map(batch).collect();
     Reference::new(setup, &batches).expect("the engine's particles are sound")
@@ -182,6 +186,7 @@ impl<T: Instance<D>, const D: usize> Engine<D> for Fast<T, D> {
             Field::Affine,
             Field::DeformationGradient,
             Field::Jacobian,
+            Field::PlasticJacobian,
         ];
         let snapshot = self.0.snapshot(&fields);
         let columns: Vec<Vec<f64>> = snapshot
@@ -205,6 +210,7 @@ impl<T: Instance<D>, const D: usize> Engine<D> for Fast<T, D> {
                 affine: matrix(7, p),
                 deformation_gradient: matrix(8, p),
                 jacobian_minus_one: columns[9][p] - 1.0,
+                plastic_jacobian: columns[10][p],
             })
             .collect()
     }
