@@ -18,13 +18,13 @@ pub struct Builtin {
 }
 
 macro_rules! scenes {
-    ($($name:literal $dimension:literal $title:literal $summary:literal;)*) => {
+    ($($name:literal $(in $folder:literal)? $dimension:literal $title:literal $summary:literal;)*) => {
         &[$(Builtin {
             name: $name,
             title: $title,
             summary: $summary,
             dimension: $dimension,
-            text: include_str!(concat!("../scenes/", $name, ".toml")),
+            text: include_str!(concat!("../scenes/", $($folder, "/",)? $name, ".toml")),
             files: &[],
         }),*]
     };
@@ -38,7 +38,15 @@ const SCENES: &[Builtin] = scenes! {
     "water-jelly-snow-3d" 3 "Water, jelly and snow in 3D" "Cubes of water and jelly and a ball of snow fall into a pool.";
     "jelly-drop" 2 "Jelly drop" "Jellies of three firmnesses fall: the soft one spreads, the firm one jumps.";
     "snowball" 2 "Snowball" "A thrown snowball bursts on a wall.";
-    "mpm88" 2 "mpm88" "The fluid square of Taichi's mpm88.py, with its constants, walls and time step.";
+    "mpm88" in "lineage" 2 "mpm88" "The fluid square of Taichi's mpm88.py, with its constants, walls and time step.";
+    "mpm99" in "lineage" 2 "mpm99" "Taichi's mpm99.py: liquid, jelly and snow fall into a box under strong gravity.";
+    "mpm128" in "lineage" 2 "mpm128" "Taichi's mpm128.py: stiffer liquid, jelly and snow, to be stirred with the mouse.";
+    "mpm3d" in "lineage" 3 "mpm3d, 32 cells a side" "Taichi's mpm3d.py: a cube of mpm88's fluid falls into a box.";
+    "mpm3d-64" in "lineage" 3 "mpm3d, 64 cells a side" "The same with 65,536 particles.";
+    "mpm3d-128" in "lineage" 3 "mpm3d, 128 cells a side" "The same with 524,288 particles.";
+    "mpm3d-ggui-single-dam" in "lineage" 3 "mpm3d_ggui, single dam break" "Taichi's mpm3d_ggui.py, first preset: a block of water collapses in a corner.";
+    "mpm3d-ggui-double-dam" in "lineage" 3 "mpm3d_ggui, double dam break" "Its second preset: two blocks of water meet.";
+    "mpm3d-ggui-water-snow-jelly" in "lineage" 3 "mpm3d_ggui, water, snow and jelly" "Its third preset: cubes of water, snow and jelly fall and touch.";
 };
 
 /// Scenes with published numbers to compare with; not listed, but found by name.

@@ -15,8 +15,13 @@ fn every_scene_reads_and_builds() {
         let built = scene
             .build(Isa::Portable)
             .unwrap_or_else(|error| panic!("{error}"));
-        // The regression of mpm88 falls faster than its soft fluid likes, and says so.
-        if builtin.name != "k7-mpm88-regression" {
+        // Programs that scenes follow number by number have fluids too soft for how fast they fall,
+        // and particles far apart; their scenes say so.
+        let follows = builtin.text.contains("number by number") || builtin.name.starts_with("k7");
+        let expected = |warning: &String| {
+            warning.contains("visibly compressed") || warning.contains("fall apart into grains")
+        };
+        if !follows || !built.warnings.iter().all(expected) {
             assert_eq!(built.warnings, [] as [&str; 0], "{}", builtin.name);
         }
         assert_eq!(
@@ -30,7 +35,13 @@ fn every_scene_reads_and_builds() {
             "{}: {count} of {expected}",
             builtin.name
         );
-        assert!(count < 110_000.0, "{}: {count}", builtin.name);
+        // The largest of the mpm3d that Taichi offers is the largest of all.
+        let most = if builtin.name == "mpm3d-128" {
+            525_000.0
+        } else {
+            110_000.0
+        };
+        assert!(count < most, "{}: {count}", builtin.name);
     }
 }
 

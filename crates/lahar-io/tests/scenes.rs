@@ -46,6 +46,31 @@ fn column(simulation: &dyn Simulate, field: Field) -> Vec<f64> {
         .unwrap_or_default()
 }
 
+/// A particle list from the command line takes the place of the shape and of what goes with it, and
+/// is found from the current folder; a shape takes the place of a list.
+#[test]
+fn a_start_is_replaced_from_the_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("start.csv");
+    std::fs::write(&path, "x,y\n0.5,0.25\n1.5,0.75\n").unwrap();
+    let path = path.to_str().unwrap();
+    let list = ("bodies.square.particles", path);
+    let load = |overrides: &[(&str, &str)]| {
+        let own = |(key, value): &(&str, &str)| ((*key).to_owned(), (*value).to_owned());
+        let overrides: Vec<_> = overrides.iter().map(own).collect();
+        Scene::load("mpm88", &overrides).unwrap_or_else(|error| panic!("{error}"))
+    };
+    // The particles' volume is not the shape's, and stays.
+    let domain = ("domain.max", "[2.0, 1.0]");
+    let mut replaced = build(&load(&[domain, list]));
+    assert_eq!(column(&*replaced, Field::Position), [0.5, 0.25, 1.5, 0.75]);
+    let mass = replaced.diagnostics().mass;
+    assert!((mass / (2.0 / 256.0 / 256.0) - 1.0).abs() < 1e-6, "{mass}");
+    let shape = "{ ball = { center = [0.5, 0.5], radius = 0.2 } }";
+    let back = load(&[domain, list, ("bodies.square.shape", shape)]);
+    assert!(back.expected_particles() > 2000.0);
+}
+
 #[test]
 fn overrides_replace_and_add() {
     let scene = with(&[

@@ -33,6 +33,11 @@ impl Sources {
         }
     }
 
+    /// Whether `span` is in an override, not in the scene.
+    pub(crate) fn is_override(&self, span: Span) -> bool {
+        span.source > 0
+    }
+
     fn add(&mut self, name: String, text: String) -> usize {
         self.0.push(Source { name, text });
         self.0.len() - 1
@@ -139,6 +144,26 @@ impl Table {
     }
 }
 
+/// Keys of a body that say where the particles of its shape are.
+const OF_SHAPES: [&str; 5] = [
+    "shape",
+    "sampling",
+    "particles_per_cell",
+    "spacing",
+    "count",
+];
+
+impl Table {
+    /// A body that is given a particle list has its shape no more, nor the other way round.
+    fn make_way_for(&mut self, key: &str) {
+        self.entries.retain(|entry| match key {
+            "particles" => !OF_SHAPES.contains(&entry.key.as_str()),
+            "shape" => entry.key != "particles",
+            _ => true,
+        });
+    }
+}
+
 /// A parsed scene, overrides applied.
 #[derive(Clone, Debug)]
 pub(crate) struct Document {
@@ -185,6 +210,14 @@ impl Document {
             },
             Err(error) => return Err(syntax(&self.sources, source, offset, &error)),
         };
+        if let [(list, _), (body, _), (key, _)] = &path[..]
+            && list == "bodies"
+            && let Some(Value::List(bodies)) = self.root.get_mut(list).map(|node| &mut node.value)
+            && let Some(at) = element_index(bodies, body)
+            && let Value::Table(body) = &mut bodies[at].value
+        {
+            body.make_way_for(key);
+        }
         let sources = &self.sources;
         set_in_table(sources, &mut self.root, &path, node)
     }

@@ -13,6 +13,7 @@ use lahar::material::{
 use lahar::{
     Contact, Domain, ForceForm, Kernel, Material, Model, Sides, TimeStep, Transfer, WallStyle,
 };
+use std::path::Path;
 
 /// Everything that depends on the dimension.
 #[derive(Clone, Debug)]
@@ -988,6 +989,13 @@ fn read_list<const D: usize>(
     (files, limits): (&Files<'_>, &Limits),
     warnings: &mut Vec<String>,
 ) -> Result<ParticleList<D>, SceneError> {
+    // What the command line names lies where the command is given.
+    let here = Files::Folder(Path::new(""));
+    let files = if table.is_override("particles") {
+        &here
+    } else {
+        files
+    };
     for key in ["particles_per_cell", "spacing", "count"] {
         if table.has(key) {
             return Err(table.error_at_key(
@@ -1001,7 +1009,11 @@ fn read_list<const D: usize>(
             "particles",
             format!("cannot read \"{}\": {reason}", super::shorten(path)),
         );
-        error.hint("particle lists are found from the scene's folder")
+        error.hint(if table.is_override("particles") {
+            "with --set, particle lists are found from the current folder"
+        } else {
+            "particle lists are found from the scene's folder"
+        })
     };
     let mut list = if path.ends_with(".csv") {
         let bytes = files.bytes(path).map_err(cannot)?;

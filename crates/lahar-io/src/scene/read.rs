@@ -44,6 +44,13 @@ impl<'a> Reader<'a> {
         )
     }
 
+    /// Whether the value of `key` comes from `--set`.
+    pub(crate) fn is_override(&self, key: &str) -> bool {
+        self.table
+            .get(key)
+            .is_some_and(|node| self.sources.is_override(node.span))
+    }
+
     pub(crate) fn has(&self, key: &str) -> bool {
         self.table.get(key).is_some()
     }
