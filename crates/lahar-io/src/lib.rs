@@ -2,6 +2,7 @@
 
 pub mod builtin;
 pub mod error;
+mod expression;
 pub mod image;
 pub mod npz;
 pub mod output;

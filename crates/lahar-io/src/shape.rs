@@ -49,6 +49,18 @@ impl<const D: usize> Bounds<D> {
         max: [f64::INFINITY; D],
     };
 
+    /// The smallest box around all of `boxes`.
+    pub(crate) fn around(boxes: &[Self]) -> Self {
+        let nothing = Self {
+            min: [f64::INFINITY; D],
+            max: [f64::NEG_INFINITY; D],
+        };
+        boxes.iter().fold(nothing, |sum, b| Self {
+            min: core::array::from_fn(|i| sum.min[i].min(b.min[i])),
+            max: core::array::from_fn(|i| sum.max[i].max(b.max[i])),
+        })
+    }
+
     /// What both have; its sides may be negative.
     pub fn intersection(&self, other: &Self) -> Self {
         Self {

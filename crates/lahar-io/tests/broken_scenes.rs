@@ -119,9 +119,109 @@ const BROKEN: &[(&str, &str, &str)] = &[
         "max = [0.5, 0.5, 0.5]",
     ),
     (
-        "an expression",
+        "an expression where there can be none",
         "dx = 0.05",
-        "dx = 0.05\ngravity = [\"sin(t)\", -9.81]",
+        "dx = \"0.05*2\"",
+    ),
+    (
+        "an expression for all components",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = \"sin(t)\"",
+    ),
+    (
+        "an unknown variable",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"sin(w)\", -9.81]",
+    ),
+    (
+        "an unknown function",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"sine(t)\", -9.81]",
+    ),
+    (
+        "a variable of 3D",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"sin(z)\", -9.81]",
+    ),
+    (
+        "a parenthesis that is not closed",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"2*(1 + sin(t)\", -9.81]",
+    ),
+    (
+        "a parenthesis too many",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"2*(1 + t))\", -9.81]",
+    ),
+    (
+        "an empty expression",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"\", -9.81]",
+    ),
+    (
+        "an expression cut short",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"3*t +\", -9.81]",
+    ),
+    (
+        "a product without a sign",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"3t\", -9.81]",
+    ),
+    (
+        "too few arguments",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"atan2(x)\", -9.81]",
+    ),
+    (
+        "a comma for a decimal point",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"1,5*t\", -9.81]",
+    ),
+    (
+        "an expression far too deep",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((t))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))\", -9.81]",
+    ),
+    (
+        "a time in a start velocity",
+        "material = \"water\"",
+        "material = \"water\"\nvelocity = [\"sin(t)\", 0.0]",
+    ),
+    (
+        "expressions for one dimension too many",
+        "dx = 0.05",
+        "dx = 0.05\ngravity = [\"t\", \"t\", \"t\"]",
+    ),
+    (
+        "an expression in a box",
+        "max = [0.5, 0.5]",
+        "max = [\"0.5\", 0.5]",
+    ),
+    (
+        "a force that does nothing",
+        "[domain]",
+        "[[forces]]\nname = \"wind\"\n\n[domain]",
+    ),
+    (
+        "a force that is two",
+        "[domain]",
+        "[[forces]]\ndamping = 1.0\nacceleration = [1.0, 0.0]\n\n[domain]",
+    ),
+    (
+        "a force without a centre",
+        "[domain]",
+        "[[forces]]\ncentral = { acceleration = 1.0 }\n\n[domain]",
+    ),
+    (
+        "a negative drag",
+        "[domain]",
+        "[[forces]]\ndrag = { rate = -1.0 }\n\n[domain]",
+    ),
+    (
+        "a typo in a force",
+        "[domain]",
+        "[[forces]]\nacelleration = [0.0, 1.0]\n\n[domain]",
     ),
     ("a shape that is none", "{ box =", "{ bx ="),
     ("a shape to come", "{ box =", "{ cylinder ="),

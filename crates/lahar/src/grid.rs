@@ -19,6 +19,7 @@
 
 use crate::boundary::walls::Walls;
 use crate::dispatch::on_level;
+use crate::forces::{self, Force};
 use crate::material::IsaToken;
 use crate::math::{Lanes, Vector};
 use crate::parallel;
@@ -44,12 +45,15 @@ struct Link<const D: usize> {
     high: [u8; D],
 }
 
-/// Forces on nodes that are not stress: gravity and the hand.
+/// Forces on nodes that are not stress: gravity, drag and the hand. (Accelerations that differ from
+/// node to node are in the grid.)
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NodeForces<T, const D: usize> {
     pub(crate) dt: T,
     /// Δt g.
     pub(crate) gravity_impulse: Vector<T, D>,
+    /// The medium's velocity, and what is left of the difference to it after Δt.
+    pub(crate) drag: Option<(T, Vector<T, D>)>,
     pub(crate) pointer: Option<NodePointer<D>>,
 }
 
@@ -79,6 +83,8 @@ pub(crate) struct Grid<T, const D: usize> {
     links_of_tile: Vec<u32>,
     tiles: Vec<T>,
     nodes: Vec<T>,
+    /// Δt a of forces that differ from node to node, D numbers a node; empty if there are none.
+    impulses: Vec<T>,
 }
 
 impl<T: Lanes, const D: usize> Grid<T, D> {
@@ -95,6 +101,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             links_of_tile: vec![0],
             tiles: Vec::new(),
             nodes: Vec::new(),
+            impulses: Vec::new(),
         }
     }
 
@@ -103,7 +110,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        size_of::<T>() * (self.tiles.capacity() + self.nodes.capacity())
+        size_of::<T>() * (self.tiles.capacity() + self.nodes.capacity() + self.impulses.capacity())
             + size_of::<Link<D>>() * self.links.capacity()
             + 4 * (self.links_by_tile.capacity()
                 + self.links_of_block.capacity()
@@ -222,6 +229,61 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         self.links_of_tile = of_tile;
     }
 
+    /// Δt a of the forces that differ from node to node, at `time`; node 0 is at `origin`.
+    pub(crate) fn evaluate(
+        &mut self,
+        forces: &[Force<D>],
+        time: f64,
+        dt: f64,
+        origin: [f64; D],
+        dx: f64,
+    ) {
+        let mut impulses = core::mem::take(&mut self.impulses);
+        impulses.resize(self.blocks.len() * BLOCK_NODES * D, T::default());
+        let grain = parallel::grain(self.blocks.len(), 4);
+        let this = &*self;
+        parallel::for_chunks(&mut impulses, BLOCK_NODES * D, 0, grain, &|first, piece| {
+            let _flush = crate::float_mode::FlushToZero::enter();
+            let mut accelerations = [[0.0; D]; BLOCK_NODES];
+            for (index, impulse) in piece.chunks_exact_mut(BLOCK_NODES * D).enumerate() {
+                let positions = this.node_positions(first + index, origin, dx);
+                forces::accelerations(forces, false, time, &positions, &[], &mut accelerations);
+                for (impulse, a) in impulse.iter_mut().zip(accelerations.as_flattened()) {
+                    *impulse = T::from_f64(dt * a);
+                }
+            }
+        });
+        self.impulses = impulses;
+    }
+
+    /// Where a block's nodes are \[m\].
+    fn node_positions(&self, block: usize, origin: [f64; D], dx: f64) -> [[f64; D]; BLOCK_NODES] {
+        let edge = block_edge(D) as i64;
+        let first: [i64; D] = self.blocks[block].map(|b| i64::from(b) * edge);
+        core::array::from_fn(|index| {
+            core::array::from_fn(|axis| {
+                let node = first[axis] + axis_index::<D>(index, axis) as i64;
+                origin[axis] + dx * node as f64
+            })
+        })
+    }
+
+    /// The largest |Δt a| of [`Self::evaluate`] on a node with mass; after an update.
+    pub(crate) fn largest_impulse(&self) -> f64 {
+        let mut largest = 0.0_f64;
+        let blocks = self.nodes.chunks_exact(self.block_len());
+        for (nodes, impulses) in blocks.zip(self.impulses.chunks_exact(BLOCK_NODES * D)) {
+            let quads = nodes[..BLOCK_NODES * QUAD].chunks_exact(QUAD);
+            for (quad, impulse) in quads.zip(impulses.chunks_exact(D)) {
+                if quad[3] > T::default() {
+                    let squared = impulse.iter().map(|a| a.to_f64() * a.to_f64()).sum();
+                    largest = largest.max(squared);
+                }
+            }
+        }
+        largest.sqrt()
+    }
+
     /// Sums the tiles' contributions and makes velocity of momentum: v = p/m + Δt g, then the walls.
     pub(crate) fn update(&mut self, isa: IsaToken, forces: &NodeForces<T, D>, walls: &Walls<D>) {
         let mut nodes = core::mem::take(&mut self.nodes);
@@ -314,7 +376,14 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             if self.planes == 2 {
                 impulses += Vector::from_fn(|axis| impulse[index * QUAD + axis]);
             }
+            if !self.impulses.is_empty() {
+                let of_node = &self.impulses[(block * BLOCK_NODES + index) * D..][..D];
+                impulses += Vector::from_fn(|axis| of_node[axis]) * mass; // (9)
+            }
             let mut velocity = (sums + impulses) * per_mass;
+            if let Some((kept, medium)) = forces.drag {
+                velocity = medium + (velocity - medium) * kept; // (10)
+            }
             if walled || forces.pointer.is_some() {
                 let node =
                     core::array::from_fn(|axis| first[axis] + axis_index::<D>(index, axis) as i64);

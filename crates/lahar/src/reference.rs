@@ -16,6 +16,7 @@
 
 use crate::boundary::walls::Walls;
 use crate::error::SetupError;
+use crate::forces;
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
 use crate::material::{ConstitutiveModel, Model, Strain, for_model};
 use crate::math::{Matrix, Vector};
@@ -81,6 +82,10 @@ pub struct Reference<const D: usize> {
     walls: Walls<D>,
     particles: Vec<Particle<D>>,
     escaped: Vec<Particle<D>>,
+    /// Where each particle started \[m\], by id.
+    starts: Vec<[f64; D]>,
+    /// Simulated time \[s\].
+    time: f64,
 }
 
 impl<const D: usize> Reference<D> {
@@ -105,7 +110,13 @@ impl<const D: usize> Reference<D> {
         for batch in batches {
             take_in(setup, batch, &mut particles)?;
         }
+        forces::check(&setup.forces)?;
         Ok(Self {
+            starts: particles
+                .iter()
+                .map(|p: &Particle<D>| p.position.0)
+                .collect(),
+            time: 0.0,
             setup: setup.clone(),
             origin: Vector(origin),
             walls,
@@ -144,9 +155,28 @@ impl<const D: usize> Reference<D> {
     /// # Panics
     /// If a particle is nowhere, or so far away that its nodes cannot be counted.
     pub fn substep(&mut self, dt: f64) {
+        self.push_particles(dt);
         let momentum = self.particles_to_grid(dt);
         let velocity = self.update_grid(&momentum, dt);
         self.grid_to_particles(&velocity, dt);
+        self.time += dt;
+    }
+
+    /// Forces that depend on where particles started: v_p += Δt a, before P2G.
+    fn push_particles(&mut self, dt: f64) {
+        for p in &mut self.particles {
+            let start = self.starts[p.id as usize];
+            let mut a = [[0.0; D]];
+            forces::accelerations(
+                &self.setup.forces,
+                true,
+                self.time,
+                &[p.position.0],
+                &[start],
+                &mut a,
+            );
+            p.velocity += Vector(a[0]) * dt; // (11)
+        }
     }
 
     /// P2G for a substep of `dt` \[s\].
@@ -196,7 +226,17 @@ impl<const D: usize> Reference<D> {
         with_mass
             .map(|(&node, n)| {
                 let before = over(n.momentum, n.mass);
-                let free = over(n.momentum + n.impulse, n.mass) + gravity * dt;
+                let x = core::array::from_fn(|axis| {
+                    self.origin[axis] + self.setup.dx * node[axis] as f64
+                });
+                let mut field = [[0.0; D]];
+                let all = &self.setup.forces;
+                forces::accelerations(all, false, self.time, &[x], &[], &mut field);
+                let mut free = over(n.momentum + n.impulse, n.mass);
+                free += (gravity + Vector(field[0])) * dt; // (9)
+                if let Some((kept, medium)) = forces::drag(all, dt) {
+                    free = Vector(medium) + (free - Vector(medium)) * kept; // (10)
+                }
                 let velocity = Velocity {
                     mass: n.mass,
                     before,

@@ -1,6 +1,7 @@
 //! What a simulation is made of, as plain data: checked once, by [`crate::Simulation::new`].
 
 use crate::boundary::Domain;
+use crate::forces::Force;
 use crate::material::Material;
 
 /// Everything but the particles. SI units; in 2D per metre of depth.
@@ -12,6 +13,8 @@ pub struct Setup<const D: usize> {
     pub domain: Option<Domain<D>>,
     /// Acceleration of everything \[m/s²\].
     pub gravity: [f64; D],
+    /// Forces besides gravity and stress.
+    pub forces: Vec<Force<D>>,
     /// The weight function between particles and nodes.
     pub kernel: Kernel,
     /// What particles and grid exchange.
@@ -34,6 +37,7 @@ impl<const D: usize> Setup<D> {
             dx,
             domain: None,
             gravity: [0.0; D],
+            forces: Vec::new(),
             kernel: Kernel::default(),
             transfer: Transfer::default(),
             force: ForceForm::default(),

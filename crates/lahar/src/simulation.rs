@@ -7,6 +7,7 @@ use crate::boundary::walls::Walls;
 use crate::diagnostics::Diagnostics;
 use crate::dispatch;
 use crate::error::{DtLimit, Failure, SetupError};
+use crate::forces::{self, Force};
 use crate::grid::{Grid, NodeForces, NodePointer};
 use crate::instance::Instance;
 use crate::material::{IsaToken, Law};
@@ -158,6 +159,8 @@ pub struct Simulation<T: Instance<D>, const D: usize> {
     pointer: Option<Pointer>,
     pub(crate) escaped: Escaped,
     pub(crate) control: StepControl,
+    /// Where each particle started \[m\], by id, if a force asks for it.
+    starts: Option<Vec<[f64; D]>>,
     next_id: u32,
     clock: Option<fn() -> f64>,
     times: PhaseTimes,
@@ -226,6 +229,11 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             pointer: None,
             escaped: Escaped::default(),
             control: StepControl::new(setup.time_step, setup.dx),
+            starts: setup
+                .forces
+                .iter()
+                .any(Force::acts_on_particles)
+                .then(Vec::new),
             next_id: 0,
             clock: None,
             times: PhaseTimes::default(),
@@ -351,6 +359,9 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         group.body.extend(before, &vec![batch.body; count]);
         group.id.extend((0..count as u32).map(|i| self.next_id + i));
         self.next_id += count as u32;
+        if let Some(starts) = &mut self.starts {
+            starts.extend_from_slice(&batch.position);
+        }
         Ok(())
     }
 
@@ -400,11 +411,84 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         self.control.speed = speed_squared.sqrt();
         self.control.wave_speed = wave_speed_squared.sqrt();
         self.control.gravity = Vector(self.setup.gravity).norm();
+        self.control.field = self.largest_acceleration();
+    }
+
+    /// The largest acceleration of a particle by forces besides gravity \[m/s²\].
+    fn largest_acceleration(&self) -> f64 {
+        let mut largest = 0.0_f64;
+        if self.setup.forces.is_empty() {
+            return largest;
+        }
+        for group in &self.groups {
+            for run in &group.runs {
+                for on_particles in [false, true] {
+                    let found = self.accelerations(group, run, on_particles);
+                    let squared = found.into_iter().map(|a| Vector(a).dot(Vector(a)));
+                    largest = squared.fold(largest, f64::max);
+                }
+            }
+        }
+        largest.sqrt()
+    }
+
+    /// Accelerations of the particles of a run by forces that act on nodes, or by those that act on
+    /// particles.
+    fn accelerations(
+        &self,
+        group: &Group<T, D>,
+        run: &Run<D>,
+        on_particles: bool,
+    ) -> Vec<[f64; D]> {
+        let positions: Vec<[f64; D]> = run
+            .rows()
+            .map(|row| self.position(group, run.block, row))
+            .collect();
+        let starts: Vec<[f64; D]> = match &self.starts {
+            Some(starts) => group.id[run.rows()]
+                .iter()
+                .map(|&id| starts[id as usize])
+                .collect(),
+            None => Vec::new(),
+        };
+        let mut found = vec![[0.0; D]; positions.len()];
+        let time = self.control.time();
+        forces::accelerations(
+            &self.setup.forces,
+            on_particles,
+            time,
+            &positions,
+            &starts,
+            &mut found,
+        );
+        found
+    }
+
+    /// Velocities changed by the forces that depend on where particles started: v += Δt a.
+    fn push_particles(&mut self, dt: f64) {
+        if self.starts.is_none() {
+            return;
+        }
+        let mut groups = core::mem::take(&mut self.groups);
+        for group in &mut groups {
+            for index in 0..group.runs.len() {
+                let run = group.runs[index];
+                let found = self.accelerations(group, &run, true);
+                for (row, a) in run.rows().zip(found) {
+                    for axis in 0..D {
+                        let v = &mut group.columns[Layout::velocity(D) + axis][row];
+                        *v += T::from_f64(dt * a[axis]); // (11)
+                    }
+                }
+            }
+        }
+        self.groups = groups;
     }
 
     /// One substep of length `dt` \[s\].
     fn substep_of(&mut self, dt: f64, limit: DtLimit) -> Result<(), Failure> {
         self.sort_if_drifted();
+        self.push_particles(dt);
         self.scatter(dt); // (1)–(4)
         self.update(dt);
         self.gather(dt, limit)?; // (5)–(8)
@@ -432,9 +516,17 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     /// Momentum to velocity, forces, walls.
     fn update(&mut self, dt: f64) {
         let start = self.now();
-        let forces = NodeForces {
+        let fields = forces::any_on_nodes(&self.setup.forces);
+        if fields {
+            let time = self.control.time();
+            self.grid
+                .evaluate(&self.setup.forces, time, dt, self.origin, self.setup.dx);
+        }
+        let node_forces = NodeForces {
             dt: T::from_f64(dt),
             gravity_impulse: Vector(self.setup.gravity.map(|g| T::from_f64(g * dt))),
+            drag: forces::drag(&self.setup.forces, dt)
+                .map(|(kept, medium)| (T::from_f64(kept), Vector(medium.map(T::from_f64)))),
             pointer: self.pointer.map(|pointer| NodePointer {
                 centre: core::array::from_fn(|axis| {
                     (pointer.position[axis] - self.origin[axis]) / self.setup.dx
@@ -443,7 +535,10 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                 action: pointer.action,
             }),
         };
-        T::update(&mut self.grid, self.isa, &forces, &self.walls);
+        T::update(&mut self.grid, self.isa, &node_forces, &self.walls);
+        if fields {
+            self.control.field = self.grid.largest_impulse() / dt;
+        }
         self.times.grid += self.now() - start;
     }
 
@@ -566,6 +661,7 @@ fn check<const D: usize>(setup: &Setup<D>, laws: usize) -> Result<Walls<D>, Setu
         }
         _ => {}
     }
+    forces::check(&setup.forces)?;
     let walls = setup
         .domain
         .as_ref()

@@ -22,6 +22,8 @@ pub(crate) struct StepControl {
     pub(crate) viscosity: f64,
     /// Size of gravity \[m/s²\].
     pub(crate) gravity: f64,
+    /// Largest acceleration by other forces \[m/s²\].
+    pub(crate) field: f64,
     /// Substeps taken.
     pub(crate) substeps: u64,
     time: f64,
@@ -37,6 +39,7 @@ impl StepControl {
             wave_speed: 0.0,
             viscosity: 0.0,
             gravity: 0.0,
+            field: 0.0,
             substeps: 0,
             time: 0.0,
             shortest: (f64::INFINITY, DtLimit::Frame),
@@ -58,8 +61,8 @@ impl StepControl {
             TimeStep::Fixed(dt) => return (dt, DtLimit::Fixed),
             TimeStep::Automatic { cfl, longest } => (cfl, longest),
         };
-        // What gravity adds before the particle has crossed its part of a cell.
-        let speed = self.speed + (cfl * self.dx * self.gravity).sqrt();
+        // What gravity and forces add before the particle has crossed its part of a cell.
+        let speed = self.speed + (cfl * self.dx * (self.gravity + self.field)).sqrt();
         let limits = [
             (cfl * self.dx / self.wave_speed, DtLimit::Sound),
             (cfl * self.dx / speed, DtLimit::Speed),

@@ -12,6 +12,7 @@ impl<const D: usize> Plan<D> {
             dx: self.dx,
             domain: self.domain.clone(),
             gravity: self.gravity,
+            forces: self.forces.clone(),
             kernel: self.kernel,
             transfer: self.transfer,
             force: self.force,
@@ -26,7 +27,10 @@ impl<const D: usize> Plan<D> {
         self.bodies
             .iter()
             .enumerate()
-            .map(|(index, body)| batch(body, index, seed, self.materials[body.material].density))
+            .map(|(index, body)| {
+                let density = self.materials[body.material].density;
+                batch(body, index, seed, (density, self.dx))
+            })
             .collect()
     }
 
@@ -57,7 +61,7 @@ fn batch<const D: usize>(
     body: &Body<D>,
     index: usize,
     seed: u64,
-    density: f64,
+    (density, dx): (f64, f64),
 ) -> ParticleBatch<D> {
     let mut batch = ParticleBatch {
         material: body.material,
@@ -104,19 +108,21 @@ fn batch<const D: usize>(
         Volume::Body(volume) => batch.volume = vec![volume / batch.position.len().max(1) as f64],
         Volume::Particle(volume) => batch.volume = vec![volume],
     }
-    add_motion(&mut batch, body);
+    add_motion(&mut batch, body, dx);
     batch
 }
 
-/// Adds v + G (x − centre of mass) to the velocities, and G to the affine matrices.
-fn add_motion<const D: usize>(batch: &mut ParticleBatch<D>, body: &Body<D>) {
+/// Adds v(x) + G (x − centre of mass) to the velocities, and ∂v/∂x + G to the affine matrices.
+fn add_motion<const D: usize>(batch: &mut ParticleBatch<D>, body: &Body<D>, dx: f64) {
     let turns = body.gradient.iter().flatten().any(|g| *g != 0.0);
-    if !turns {
+    let constant = body.velocity.is_constant();
+    if !turns && constant {
+        let velocity = body.velocity.constants();
         if batch.velocity.is_empty() {
-            batch.velocity = vec![body.velocity];
+            batch.velocity = vec![velocity];
         } else {
             for v in &mut batch.velocity {
-                *v = core::array::from_fn(|i| v[i] + body.velocity[i]);
+                *v = core::array::from_fn(|i| v[i] + velocity[i]);
             }
         }
         return;
@@ -125,19 +131,38 @@ fn add_motion<const D: usize>(batch: &mut ParticleBatch<D>, body: &Body<D>) {
     let count = batch.position.len();
     batch.velocity.resize(count, [0.0; D]);
     batch.affine.resize(count, [[0.0; D]; D]);
-    for ((x, v), c) in batch
+    let velocity = body.velocity.at(&batch.position);
+    for (((x, v), c), given) in batch
         .position
         .iter()
         .zip(&mut batch.velocity)
         .zip(&mut batch.affine)
+        .zip(velocity)
     {
         for i in 0..D {
-            v[i] += body.velocity[i]
+            v[i] += given[i]
                 + (0..D)
                     .map(|j| body.gradient[i][j] * (x[j] - center[j]))
                     .sum::<f64>();
             for j in 0..D {
                 c[i][j] += body.gradient[i][j];
+            }
+        }
+    }
+    if constant {
+        return;
+    }
+    // The gradient over a cell, which is what the grid can tell.
+    for j in 0..D {
+        let beside = |step: f64| -> Vec<[f64; D]> {
+            let mut places = batch.position.clone();
+            places.iter_mut().for_each(|x| x[j] += step);
+            body.velocity.at(&places)
+        };
+        let (low, high) = (beside(-0.5 * dx), beside(0.5 * dx));
+        for ((c, low), high) in batch.affine.iter_mut().zip(low).zip(high) {
+            for i in 0..D {
+                c[i][j] += (high[i] - low[i]) / dx;
             }
         }
     }

@@ -2,9 +2,11 @@
 //! here, and what is absent and has a default is filled in.
 
 use super::document::{Entry, Node, Sources, Span, Table, Value, literal, literal_table};
+use super::formula::Of;
 use super::keys::{Key, Kind, MODELS, MODULI, SCENE, SECTIONS, Section, WhenAbsent, model_section};
 use super::preset;
 use crate::error::{SceneError, nearest};
+use crate::expression::Expression;
 
 /// Checks and completes the scene `root`; returns its dimension.
 pub(crate) fn check(sources: &Sources, root: &mut Table) -> Result<usize, SceneError> {
@@ -47,6 +49,32 @@ pub(crate) fn model_of(material: &Table) -> Option<&str> {
             .iter()
             .copied()
             .find(|model| keys.starts_with(&format!("model = \"{model}\"")))
+    })
+}
+
+const NO_FORMULAS: &str = "it takes numbers only; gravity, velocity and forces take expressions";
+
+/// An expression of a scene; what is wrong with it is pointed at.
+pub(crate) fn read_formula(
+    sources: &Sources,
+    node: &Node,
+    of: Of,
+    dimension: usize,
+) -> Result<Expression, SceneError> {
+    let text = match &node.value {
+        Value::Text(text) => text,
+        other => {
+            let number = other.as_number().unwrap_or(f64::NAN);
+            return Ok(Expression::number(number));
+        }
+    };
+    of.parse(text, dimension).map_err(|error| {
+        let span = sources.within(node.span, text, error.place);
+        let found = sources.error(span, error.message);
+        match error.hint {
+            Some(hint) => found.hint(hint),
+            None => found,
+        }
     })
 }
 
@@ -203,6 +231,7 @@ impl Check<'_> {
             (Kind::Vector, Value::List(list)) => {
                 self.numbers(list, span, name, kind, self.dimension, true)
             }
+            (Kind::Formulas(of), Value::List(list)) => self.formulas(list, span, name, of),
             (Kind::Rotation, value) if self.dimension == 2 => match value.as_number() {
                 Some(number) if number.is_finite() => Ok(()),
                 _ => Err(wrong(value)),
@@ -289,16 +318,38 @@ impl Check<'_> {
             (_, value) => {
                 let error = wrong(value);
                 Err(match (kind, value) {
-                    (Kind::Vector, Value::Text(_)) => {
-                        error.hint("expressions are not available yet in this version of lahar")
+                    (Kind::Formulas(_), Value::Text(_)) => {
+                        error.hint("write an expression for each component, in brackets")
                     }
+                    (Kind::Vector, Value::Text(_)) => error.hint(NO_FORMULAS),
                     _ => error,
                 })
             }
         }
     }
 
-    /// `count` numbers; expressions, which will come, are named as such.
+    /// Numbers or expressions, one a dimension.
+    fn formulas(&self, list: &[Node], span: Span, name: &str, of: Of) -> Result<(), SceneError> {
+        let is_text = |node: &&Node| matches!(node.value, Value::Text(_));
+        let numbers: Vec<Node> = list
+            .iter()
+            .map(|node| {
+                let mut number = node.clone();
+                if is_text(&node) {
+                    number.value = Value::Number(0.0);
+                }
+                number
+            })
+            .collect();
+        let kind = Kind::Formulas(of);
+        self.numbers(&numbers, span, name, kind, self.dimension, true)?;
+        for node in list.iter().filter(is_text) {
+            read_formula(self.sources, node, of, self.dimension)?;
+        }
+        Ok(())
+    }
+
+    /// `count` numbers.
     fn numbers(
         &self,
         list: &[Node],
@@ -324,8 +375,7 @@ impl Check<'_> {
                 }
                 (_, Some(_)) => {}
                 (Value::Text(_), _) => {
-                    return Err(bad(item.value.describe())
-                        .hint("expressions are not available yet in this version of lahar"));
+                    return Err(bad(item.value.describe()).hint(NO_FORMULAS));
                 }
                 _ => return Err(bad(item.value.describe())),
             }

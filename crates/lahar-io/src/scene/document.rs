@@ -38,6 +38,23 @@ impl Sources {
         span.source > 0
     }
 
+    /// The bytes `part` of `text`, a value that stands at `span`; all of it where its spelling
+    /// differs (escapes).
+    pub(crate) fn within(&self, span: Span, text: &str, part: core::ops::Range<usize>) -> Span {
+        let spelt = self
+            .0
+            .get(span.source)
+            .and_then(|source| source.text.get(span.start..span.end));
+        match spelt.and_then(|spelt| spelt.find(text)) {
+            Some(at) if !text.is_empty() => Span {
+                source: span.source,
+                start: span.start + at + part.start,
+                end: span.start + at + part.end,
+            },
+            _ => span,
+        }
+    }
+
     fn add(&mut self, name: String, text: String) -> usize {
         self.0.push(Source { name, text });
         self.0.len() - 1

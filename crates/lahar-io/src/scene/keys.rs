@@ -61,6 +61,8 @@ pub(crate) enum Kind {
     Integer(i64, i64),
     /// D numbers.
     Vector,
+    /// D numbers or expressions.
+    Formulas(Of),
     /// A number in 2D, three in 3D.
     Rotation,
     /// D rows of D numbers.
@@ -133,6 +135,10 @@ impl Kind {
             Self::Integer(low, i64::MAX) => format!("a whole number, {low} or above"),
             Self::Integer(low, high) => format!("a whole number from {low} to {high}"),
             Self::Vector => format!("{dimension} numbers, like {}", vector_example(dimension)),
+            Self::Formulas(_) => format!(
+                "{dimension} numbers or expressions, like {}",
+                vector_example(dimension)
+            ),
             Self::Rotation if dimension == 2 => "a number".to_owned(),
             Self::Rotation => "3 numbers, like [0.0, 0.0, 1.0]".to_owned(),
             Self::Matrix => format!("{dimension} rows of {dimension} numbers"),
@@ -198,6 +204,7 @@ const fn only_3d(mut key: Key) -> Key {
     key
 }
 
+use super::formula::Of;
 use WhenAbsent::{ByDimension, Required, Value, Words};
 
 /// The tables that have a name of their own in the documentation, in its order.
@@ -217,6 +224,10 @@ pub(crate) const SECTIONS: &[&Section] = &[
     &BALL,
     &HALF_SPACE,
     &POLYGON,
+    &FORCE,
+    &CENTRAL,
+    &VORTEX,
+    &DRAG,
     &CAMERA,
     &CONTROLS,
     &GRAVITY_KEYS,
@@ -258,10 +269,10 @@ pub(crate) static SCENE: Section = Section {
         ),
         key(
             "gravity",
-            Kind::Vector,
+            Kind::Formulas(Of::PlaceAndTime),
             "m/s²",
             ByDimension("[0.0, -9.81]", "[0.0, -9.81, 0.0]"),
-            "Acceleration of everything.",
+            "Acceleration of everything; may be expressions.",
         ),
         key(
             "dx",
@@ -383,7 +394,13 @@ pub(crate) static SCENE: Section = Section {
             "What a run writes.",
         ),
         later("colliders"),
-        later("forces"),
+        key(
+            "forces",
+            Kind::Tables(&FORCE),
+            "",
+            Words("none"),
+            "What acts on everything besides gravity: one `[[forces]]` each.",
+        ),
         later("emitters"),
         later("drains"),
         later("probes"),
@@ -808,10 +825,10 @@ pub(crate) static BODY: Section = Section {
         ),
         key(
             "velocity",
-            Kind::Vector,
+            Kind::Formulas(Of::Place),
             "m/s",
             ByDimension("[0.0, 0.0]", "[0.0, 0.0, 0.0]"),
-            "Velocity at the start; added to that of a particle list.",
+            "Velocity at the start, numbers or expressions in x, y, z; added to that of a particle list.",
         ),
         key(
             "spin",
@@ -976,6 +993,142 @@ pub(crate) static POLYGON: Section = Section {
         Required,
         "Its corners in order, either way round; at least 3, sides must not cross.",
     )]],
+};
+
+pub(crate) static FORCE: Section = Section {
+    name: "force",
+    header: "[[forces]]: exactly one besides the name",
+    keys: &[&[
+        key(
+            "name",
+            Kind::Text,
+            "",
+            Words("its number from 0"),
+            "Name, for `--set forces.NAME.acceleration=..`.",
+        ),
+        key(
+            "acceleration",
+            Kind::Formulas(Of::PlaceAndTime),
+            "m/s²",
+            Words("–"),
+            "An acceleration, numbers or expressions.",
+        ),
+        key(
+            "central",
+            Kind::Table(&CENTRAL),
+            "",
+            Words("–"),
+            "An acceleration towards a point.",
+        ),
+        key(
+            "vortex",
+            Kind::Table(&VORTEX),
+            "",
+            Words("–"),
+            "An acceleration around a point, in 3D around an axis.",
+        ),
+        key(
+            "drag",
+            Kind::Table(&DRAG),
+            "",
+            Words("–"),
+            "Resistance of air or another medium.",
+        ),
+        key(
+            "damping",
+            Kind::Number(Bound::NotNegative),
+            "1/s",
+            Words("–"),
+            "Drag of a medium at rest: velocities decay at this rate.",
+        ),
+    ]],
+};
+
+const CENTER: Key = key("center", Kind::Vector, "m", Required, "The point.");
+const ACCELERATION: Key = key(
+    "acceleration",
+    Kind::Number(Bound::Any),
+    "m/s²",
+    Required,
+    "A: its size at `distance`; negative turns it round.",
+);
+const DISTANCE: Key = key(
+    "distance",
+    Kind::Number(Bound::Positive),
+    "m",
+    Value("1.0"),
+    "d: the distance at which it has that size.",
+);
+const SOFTENING: Key = key(
+    "softening",
+    Kind::Number(Bound::Positive),
+    "m",
+    Words("`dx`"),
+    "ε: below it the distance hardly counts.",
+);
+
+pub(crate) static CENTRAL: Section = Section {
+    name: "central",
+    header: "central = { .. }: A (d/s)ⁿ r/s with s = √(r² + ε²)",
+    keys: &[&[
+        CENTER,
+        ACCELERATION,
+        DISTANCE,
+        key(
+            "power",
+            Kind::Number(Bound::Any),
+            "",
+            Value("2.0"),
+            "n: 2 as of a planet, 0 the same everywhere, -1 a spring.",
+        ),
+        SOFTENING,
+    ]],
+};
+
+pub(crate) static VORTEX: Section = Section {
+    name: "vortex",
+    header: "vortex = { .. }: the same, turned counter-clockwise by a right angle",
+    keys: &[&[
+        CENTER,
+        only_3d(key(
+            "axis",
+            Kind::Vector,
+            "",
+            Value("[0.0, 1.0, 0.0]"),
+            "Direction of the axis, of any length.",
+        )),
+        ACCELERATION,
+        DISTANCE,
+        key(
+            "power",
+            Kind::Number(Bound::Any),
+            "",
+            Value("1.0"),
+            "n: how fast it falls with the distance.",
+        ),
+        SOFTENING,
+    ]],
+};
+
+pub(crate) static DRAG: Section = Section {
+    name: "drag",
+    header: "drag = { .. }: -rate (v - velocity)",
+    keys: &[&[
+        key(
+            "rate",
+            Kind::Number(Bound::NotNegative),
+            "1/s",
+            Required,
+            "How fast the difference to the medium's velocity decays.",
+        ),
+        key(
+            "velocity",
+            Kind::Vector,
+            "m/s",
+            ByDimension("[0.0, 0.0]", "[0.0, 0.0, 0.0]"),
+            "Velocity of the medium: wind, a current.",
+        ),
+    ]],
 };
 
 pub(crate) static CAMERA: Section = Section {

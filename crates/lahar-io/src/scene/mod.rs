@@ -23,6 +23,8 @@ mod check;
 mod comparison;
 mod controls;
 mod document;
+mod forces;
+mod formula;
 mod keys;
 mod plan;
 mod preset;

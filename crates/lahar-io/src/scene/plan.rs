@@ -1,5 +1,7 @@
 //! From a checked document to a plan in numbers of one dimension: domain, materials, bodies.
 
+use super::forces::{expect, lattice, read_forces};
+use super::formula::{Formulas, Of};
 use super::keys::MODULI;
 use super::read::Reader;
 use super::{Files, Limits};
@@ -11,7 +13,8 @@ use lahar::material::{
     Corotated, Dust, Eos, Fluid, HardeningFrom, JacobianUpdate, NeoHookean, Snow, lame,
 };
 use lahar::{
-    Contact, Domain, ForceForm, Kernel, Material, Model, Sides, TimeStep, Transfer, WallStyle,
+    Contact, Domain, Force, ForceForm, Kernel, Material, Model, Sides, TimeStep, Transfer,
+    WallStyle,
 };
 use std::path::Path;
 
@@ -19,7 +22,11 @@ use std::path::Path;
 #[derive(Clone, Debug)]
 pub(crate) struct Plan<const D: usize> {
     pub(crate) dx: f64,
+    /// The part of gravity that is the same always.
     pub(crate) gravity: [f64; D],
+    pub(crate) forces: Vec<Force<D>>,
+    /// Simulated time of a run \[s\].
+    pub(crate) duration: f64,
     pub(crate) domain: Option<Domain<D>>,
     pub(crate) kernel: Kernel,
     pub(crate) transfer: Transfer,
@@ -36,7 +43,7 @@ pub(crate) struct Body<const D: usize> {
     pub(crate) name: String,
     pub(crate) material: usize,
     pub(crate) source: Source<D>,
-    pub(crate) velocity: [f64; D],
+    pub(crate) velocity: Formulas<D>,
     /// ∂v_i/∂x_j of spin and velocity gradient together \[1/s\].
     pub(crate) gradient: [[f64; D]; D],
     pub(crate) volume: Volume,
@@ -97,15 +104,19 @@ impl<const D: usize> Body<D> {
         let half: [f64; D] = core::array::from_fn(|i| 0.5 * bounds.side(i));
         let turning: [f64; D] =
             core::array::from_fn(|i| (0..D).map(|j| self.gradient[i][j].abs() * half[j]).sum());
-        let listed = match &self.source {
-            Source::List(list) if !list.velocity.is_empty() => list
-                .velocity
-                .iter()
-                .map(|v| length(&core::array::from_fn(|i| v[i] + self.velocity[i])))
-                .fold(0.0, f64::max),
-            _ => length(&self.velocity),
+        // Places along an axis at which a formula is looked at.
+        const PLACES: usize = 9;
+        let own = if self.velocity.is_constant() {
+            vec![self.velocity.constants()]
+        } else {
+            self.velocity.at(&lattice(&bounds, PLACES))
         };
-        listed + length(&turning)
+        let own = own.iter().map(length).fold(0.0, f64::max);
+        let listed = match &self.source {
+            Source::List(list) => list.velocity.iter().map(length).fold(0.0, f64::max),
+            Source::Shape { .. } => 0.0,
+        };
+        own + listed + length(&turning)
     }
 }
 
@@ -129,7 +140,7 @@ impl<const D: usize> Plan<D> {
     ) -> Result<Self, SceneError> {
         let dx = scene.number("dx")?;
         let mut warnings = Vec::new();
-        let gravity = scene.vector("gravity")?;
+        let (gravity, forces) = read_forces(scene, dx)?;
         let domain = scene
             .opt_table("domain")
             .map(|table| read_domain(scene, &table, dx))
@@ -183,6 +194,8 @@ impl<const D: usize> Plan<D> {
         let mut plan = Self {
             dx,
             gravity,
+            forces,
+            duration: scene.number("duration")?,
             domain,
             kernel,
             transfer,
@@ -197,18 +210,31 @@ impl<const D: usize> Plan<D> {
         Ok(plan)
     }
 
-    /// Largest speed that the bodies may reach: √(v² + 2 g H) \[m/s\].
+    /// Largest speed that the bodies may reach \[m/s\]: √(v² + 2 g H), with g the mean of gravity
+    /// and forces; what they swing by counts over half of the longest side.
     fn expected_speed(&self) -> f64 {
-        let g = self.gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
-        let fastest = self.bodies.iter().map(Body::speed).fold(0.0, f64::max);
+        let bounds: Vec<Bounds<D>> = self.bodies.iter().map(Body::bounds).collect();
+        let forces = expect(&self.forces, &bounds, self.duration);
+        let pull: [f64; D] = core::array::from_fn(|i| self.gravity[i] + forces.mean[i]);
+        let g = pull.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let longest = |bounds: &Bounds<D>| (0..D).map(|i| bounds.side(i)).fold(0.0, f64::max);
+        let room = match &self.domain {
+            Some(domain) => longest(&Bounds {
+                min: domain.min,
+                max: domain.max,
+            }),
+            None => longest(&Bounds::around(&bounds)),
+        };
+        let thrown = self.bodies.iter().map(Body::speed).fold(0.0, f64::max);
+        let squared = thrown * thrown + forces.swing * room;
         if g == 0.0 {
-            return fastest;
+            return squared.sqrt();
         }
         // Lowest and highest height of a box against gravity.
         let heights = |bounds: &Bounds<D>| {
             let mut range = [0.0, 0.0];
             for i in 0..D {
-                let up = -self.gravity[i] / g;
+                let up = -pull[i] / g;
                 if up != 0.0 {
                     let (a, b) = (bounds.min[i] * up, bounds.max[i] * up);
                     range = [range[0] + a.min(b), range[1] + a.max(b)];
@@ -235,7 +261,7 @@ impl<const D: usize> Plan<D> {
                 .map(|range| range[0])
                 .fold(f64::INFINITY, f64::min),
         };
-        (fastest * fastest + 2.0 * g * (top - floor).max(0.0)).sqrt()
+        (squared + 2.0 * g * (top - floor).max(0.0)).sqrt()
     }
 
     /// Gives every fluid its bulk modulus.
@@ -785,7 +811,7 @@ fn read_body<const D: usize>(
         name,
         material,
         source,
-        velocity: table.vector("velocity")?,
+        velocity: table.formulas("velocity", Of::Place)?,
         gradient: read_gradient(table)?,
         volume,
     })

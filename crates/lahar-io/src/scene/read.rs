@@ -1,7 +1,9 @@
 //! Typed access to a checked table. Kinds and defaults were seen to by `check`: what is absent here
 //! has no default.
 
+use super::check::read_formula;
 use super::document::{Node, Sources, Span, Table, Value};
+use super::formula::{Formulas, Of};
 use crate::error::SceneError;
 
 /// A table of the scene, with its place.
@@ -102,6 +104,23 @@ impl<'a> Reader<'a> {
 
     pub(crate) fn vector<const D: usize>(&self, key: &str) -> Result<[f64; D], SceneError> {
         self.required(key, self.opt_vector(key))
+    }
+
+    /// D numbers or expressions.
+    pub(crate) fn formulas<const D: usize>(
+        &self,
+        key: &str,
+        of: Of,
+    ) -> Result<Formulas<D>, SceneError> {
+        let list = match self.table.get(key).map(|node| &node.value) {
+            Some(Value::List(list)) => list.as_slice(),
+            _ => &[],
+        };
+        let formulas = list
+            .iter()
+            .map(|node| read_formula(self.sources, node, of, D))
+            .collect::<Result<Vec<_>, _>>()?;
+        self.required(key, formulas.try_into().ok().map(Formulas))
     }
 
     /// Rows of D numbers.

@@ -77,6 +77,9 @@ fn value_of(kind: Kind) -> Value {
         Kind::Integer(low, i64::MAX) => json!({ "type": "integer", "minimum": low }),
         Kind::Integer(low, high) => json!({ "type": "integer", "minimum": low, "maximum": high }),
         Kind::Vector => vector,
+        Kind::Formulas(_) => {
+            json!({ "type": "array", "items": { "type": ["number", "string"] }, "minItems": 2, "maxItems": 3 })
+        }
         Kind::Rotation => {
             json!({ "anyOf": [{ "type": "number" }, { "type": "array", "items": { "type": "number" }, "minItems": 3, "maxItems": 3 }] })
         }
@@ -240,6 +243,7 @@ fn kind_words(kind: Kind) -> String {
         Kind::Text => "text".to_owned(),
         Kind::Color => "\"#rrggbb\"".to_owned(),
         Kind::Vector => "D numbers".to_owned(),
+        Kind::Formulas(_) => "D numbers or expressions".to_owned(),
         Kind::Rotation => "a number; in 3D 3 numbers".to_owned(),
         Kind::Matrix => "D rows of D numbers".to_owned(),
         Kind::Points => "a list of points of D numbers".to_owned(),

@@ -1,0 +1,138 @@
+//! Forces of a scene, and what they may do to its speeds.
+
+use super::formula::{Formulas, Of};
+use super::read::Reader;
+use crate::error::SceneError;
+use crate::shape::Bounds;
+use lahar::{Force, Pull};
+use std::sync::Arc;
+
+/// What a force is.
+const KINDS: [&str; 5] = ["acceleration", "central", "vortex", "drag", "damping"];
+
+/// Gravity, a part that is the same always and what is left of its expressions, and the forces.
+pub(crate) fn read_forces<const D: usize>(
+    scene: &Reader<'_>,
+    dx: f64,
+) -> Result<([f64; D], Vec<Force<D>>), SceneError> {
+    let gravity: Formulas<D> = scene.formulas("gravity", Of::PlaceAndTime)?;
+    let constant = gravity.constants();
+    let mut forces = Vec::new();
+    if !gravity.is_constant() {
+        forces.push(Force::Field(Arc::new(gravity.without_constants())));
+    }
+    for (_, table) in scene.tables("forces") {
+        forces.push(read_force(&table, dx)?);
+    }
+    Ok((constant, forces))
+}
+
+fn read_force<const D: usize>(table: &Reader<'_>, dx: f64) -> Result<Force<D>, SceneError> {
+    let given: Vec<&str> = KINDS.into_iter().filter(|kind| table.has(kind)).collect();
+    let kind = match given[..] {
+        [kind] => kind,
+        [] => {
+            return Err(table
+                .error("this force does nothing")
+                .hint(format!("give one of: {}", KINDS.join(", "))));
+        }
+        [first, second, ..] => {
+            return Err(table
+                .error_at_key(second, format!("this force has \"{first}\" already"))
+                .hint("make a second [[forces]] of it"));
+        }
+    };
+    let inner = table.opt_table(kind);
+    let pull = |inner: &Reader<'_>| -> Result<Pull<D>, SceneError> {
+        Ok(Pull {
+            center: inner.vector("center")?,
+            acceleration: inner.number("acceleration")?,
+            distance: inner.number("distance")?,
+            power: inner.number("power")?,
+            softening: inner.opt_number("softening").unwrap_or(dx),
+        })
+    };
+    Ok(match (kind, inner) {
+        ("central", Some(inner)) => Force::Central(pull(&inner)?),
+        ("vortex", Some(inner)) => {
+            let axis = inner.opt_vector::<3>("axis").unwrap_or([0.0, 0.0, 1.0]);
+            let length = axis.iter().map(|n| n * n).sum::<f64>().sqrt();
+            if !(length > 0.0 && length.is_finite()) {
+                return Err(inner.error_at("axis", "the axis has no direction"));
+            }
+            Force::Vortex {
+                pull: pull(&inner)?,
+                axis: axis.map(|n| n / length),
+            }
+        }
+        ("drag", Some(inner)) => Force::Drag {
+            rate: inner.number("rate")?,
+            velocity: inner.vector("velocity")?,
+        },
+        ("damping", _) => Force::Drag {
+            rate: table.number("damping")?,
+            velocity: [0.0; D],
+        },
+        _ => Force::Field(Arc::new(
+            table.formulas::<D>("acceleration", Of::PlaceAndTime)?,
+        )),
+    })
+}
+
+/// Accelerations by forces where bodies are, over a run.
+pub(crate) struct Expected<const D: usize> {
+    /// Their mean \[m/s²\].
+    pub(crate) mean: [f64; D],
+    /// How far they are from it at the most \[m/s²\].
+    pub(crate) swing: f64,
+}
+
+/// Places along an axis of a body, and moments of a run, that are looked at.
+const PLACES: usize = 5;
+const MOMENTS: usize = 128;
+
+/// Part of a run from one moment to the next, round and round: the golden section falls in step
+/// with no oscillation.
+const GOLDEN: f64 = 0.618_033_988_749_895;
+
+/// Looks at the forces on a lattice of each of the `bodies`, from the start to `duration` \[s\].
+pub(crate) fn expect<const D: usize>(
+    forces: &[Force<D>],
+    bodies: &[Bounds<D>],
+    duration: f64,
+) -> Expected<D> {
+    let places: Vec<[f64; D]> = bodies.iter().flat_map(|b| lattice(b, PLACES)).collect();
+    let mut all: Vec<[f64; D]> = Vec::new();
+    for moment in 0..MOMENTS {
+        let time = duration * (moment as f64 * GOLDEN).fract();
+        let mut sum = vec![[0.0; D]; places.len()];
+        for force in forces {
+            for (sum, a) in sum
+                .iter_mut()
+                .zip(force.accelerations(time, &places, &places))
+            {
+                for i in 0..D {
+                    sum[i] += a[i];
+                }
+            }
+        }
+        all.extend(sum.into_iter().filter(|a| a.iter().all(|a| a.is_finite())));
+    }
+    let count = all.len().max(1) as f64;
+    let mean = core::array::from_fn(|i| all.iter().map(|a| a[i]).sum::<f64>() / count);
+    let far = |a: &[f64; D]| (0..D).map(|i| (a[i] - mean[i]).powi(2)).sum::<f64>();
+    let swing = all.iter().map(far).fold(0.0, f64::max).sqrt();
+    Expected { mean, swing }
+}
+
+/// `n` places along each axis of a box, its faces included.
+pub(crate) fn lattice<const D: usize>(bounds: &Bounds<D>, n: usize) -> Vec<[f64; D]> {
+    (0..n.pow(D as u32))
+        .map(|number| {
+            core::array::from_fn(|i| {
+                let step = number / n.pow(i as u32) % n;
+                bounds.min[i] + bounds.side(i) * step as f64 / (n - 1) as f64
+            })
+        })
+        .collect()
+}

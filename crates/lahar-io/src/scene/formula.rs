@@ -1,0 +1,113 @@
+//! Vectors of a scene that are numbers or formulas: gravity, forces, velocities at the start.
+
+use crate::expression::Expression;
+use lahar::AccelerationField;
+
+/// Variables of formulas, by their numbers: place, time, place at the start.
+const X: usize = 0;
+const T: usize = 3;
+const START: usize = 4;
+
+/// A formula may not depend on everything.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Of {
+    /// x, y, z.
+    Place,
+    /// x, y, z, t, and X, Y, Z where a particle started.
+    PlaceAndTime,
+}
+
+impl Of {
+    /// Names of the variables, in the order of their numbers.
+    fn variables(self, dimension: usize) -> Vec<&'static str> {
+        match (self, dimension) {
+            (Self::Place, 2) => vec!["x", "y"],
+            (Self::Place, _) => vec!["x", "y", "z"],
+            // No formula can contain a name of two words, so that the numbers stay the same.
+            (Self::PlaceAndTime, 2) => vec!["x", "y", "(z)", "t", "X", "Y"],
+            (Self::PlaceAndTime, _) => vec!["x", "y", "z", "t", "X", "Y", "Z"],
+        }
+    }
+
+    /// Reads one component.
+    pub(crate) fn parse(
+        self,
+        text: &str,
+        dimension: usize,
+    ) -> Result<Expression, crate::expression::ExpressionError> {
+        Expression::parse(text, &self.variables(dimension))
+    }
+}
+
+/// D components, each a formula; numbers are formulas too.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Formulas<const D: usize>(pub(crate) [Expression; D]);
+
+impl<const D: usize> Formulas<D> {
+    /// The components that are numbers; 0 where they are not.
+    pub(crate) fn constants(&self) -> [f64; D] {
+        core::array::from_fn(|i| self.0[i].constant().unwrap_or(0.0))
+    }
+
+    /// Whether all are numbers.
+    pub(crate) fn is_constant(&self) -> bool {
+        self.0.iter().all(|formula| formula.constant().is_some())
+    }
+
+    /// The rest when [`Self::constants`] are taken away.
+    pub(crate) fn without_constants(mut self) -> Self {
+        for formula in &mut self.0 {
+            if formula.constant().is_some() {
+                *formula = Expression::number(0.0);
+            }
+        }
+        self
+    }
+
+    /// The values at `positions` at the start.
+    pub(crate) fn at(&self, positions: &[[f64; D]]) -> Vec<[f64; D]> {
+        let mut out = vec![[0.0; D]; positions.len()];
+        self.accelerations(0.0, positions, positions, &mut out);
+        out
+    }
+}
+
+impl<const D: usize> AccelerationField<D> for Formulas<D> {
+    fn accelerations(
+        &self,
+        time: f64,
+        positions: &[[f64; D]],
+        starts: &[[f64; D]],
+        out: &mut [[f64; D]],
+    ) {
+        let mut column = vec![0.0; out.len()];
+        for (axis, formula) in self.0.iter().enumerate() {
+            // What is the same everywhere is computed once.
+            let same = (0..D).all(|i| !formula.uses(X + i) && !formula.uses(START + i));
+            let values = if same {
+                &mut column[..1]
+            } else {
+                &mut column[..]
+            };
+            formula.evaluate(values, |variable, first, column| {
+                let (points, i) = match variable {
+                    T => return column.fill(time),
+                    START.. => (starts, variable - START),
+                    _ => (positions, variable - X),
+                };
+                for (value, point) in column.iter_mut().zip(&points[first..]) {
+                    *value = point[i];
+                }
+            });
+            for (i, a) in out.iter_mut().enumerate() {
+                a[axis] = column[if same { 0 } else { i }];
+            }
+        }
+    }
+
+    fn depends_on_start(&self) -> bool {
+        self.0
+            .iter()
+            .any(|formula| (0..D).any(|i| formula.uses(START + i)))
+    }
+}
