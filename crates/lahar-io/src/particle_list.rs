@@ -27,7 +27,7 @@ pub struct ParticleList<const D: usize> {
 
 /// What a column of a text file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Column {
+pub(crate) enum Column {
     Position(usize),
     Velocity(usize),
     Volume,
@@ -44,10 +44,10 @@ impl Column {
     }
 }
 
-const AXES: [&str; 3] = ["x", "y", "z"];
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Every column that a file may have, by its name.
-fn known_columns<const D: usize>() -> Vec<(String, Column)> {
+pub(crate) fn known_columns<const D: usize>() -> Vec<(String, Column)> {
     let mut known = Vec::new();
     known.extend((0..D).map(|i| (AXES[i].to_owned(), Column::Position(i))));
     known.extend((0..D).map(|i| (format!("v{}", AXES[i]), Column::Velocity(i))));
@@ -83,51 +83,19 @@ pub fn parse_csv<const D: usize>(text: &str, name: &str) -> Result<ParticleList<
     };
     let columns = parse_header::<D>(text, name, start, header)?;
     let mut list = ParticleList::default();
-    let has = |column: Column| columns.contains(&column);
+    let mut values = Vec::with_capacity(columns.len());
     for (start, line) in lines {
-        let mut position = [0.0; D];
-        let mut velocity = [0.0; D];
-        let mut gradient = [[0.0; D]; D];
-        let mut affine = [[0.0; D]; D];
-        let mut found = 0;
+        values.clear();
         for (field_start, field) in fields(start, line) {
-            let Some(&column) = columns.get(found) else {
-                found = line.split(',').count();
+            let Some(&column) = columns.get(values.len()) else {
                 break;
             };
-            let error = |message: String| {
-                Err(SceneError::at(
-                    name,
-                    text,
-                    field_start,
-                    field_start + field.len(),
-                    message,
-                ))
-            };
-            let number = match field.parse::<f64>() {
-                Ok(number) if number.is_finite() => number,
-                Ok(number) => return error(format!("{number} is no value for a particle")),
-                Err(_) => {
-                    return error(format!(
-                        "\"{}\" is not a number",
-                        crate::scene::shorten(field)
-                    ));
-                }
-            };
-            if column.is_positive() && number <= 0.0 {
-                return error(format!("{number} must be above 0"));
-            }
-            match column {
-                Column::Position(i) => position[i] = number,
-                Column::Velocity(i) => velocity[i] = number,
-                Column::Volume => list.volume.push(number),
-                Column::Mass => list.mass.push(number),
-                Column::Jacobian => list.jacobian.push(number),
-                Column::Gradient(i, j) => gradient[i][j] = number,
-                Column::Affine(i, j) => affine[i][j] = number,
-            }
-            found += 1;
+            let end = field_start + field.len();
+            let number = parse_number(field, column)
+                .map_err(|message| SceneError::at(name, text, field_start, end, message))?;
+            values.push(number);
         }
+        let found = line.split(',').count();
         if found != columns.len() {
             let error = SceneError::at(
                 name,
@@ -146,16 +114,7 @@ pub fn parse_csv<const D: usize>(text: &str, name: &str) -> Result<ParticleList<
                 error
             });
         }
-        list.position.push(position);
-        if has(Column::Velocity(0)) {
-            list.velocity.push(velocity);
-        }
-        if has(Column::Gradient(0, 0)) {
-            list.deformation_gradient.push(gradient);
-        }
-        if has(Column::Affine(0, 0)) {
-            list.affine.push(affine);
-        }
+        list.add(&columns, &values);
     }
     if !text.ends_with('\n') {
         list.warnings.push(format!(
@@ -203,7 +162,62 @@ fn parse_header<const D: usize>(
         }
         columns.push(*column);
     }
-    // A vector or matrix has all of its columns or none.
+    if let Err(message) = check_columns::<D>(&columns) {
+        let end = start + header.len();
+        return Err(SceneError::at(name, text, start, end, message));
+    }
+    Ok(columns)
+}
+
+/// A number of a text file, if a particle can have it in `column`.
+pub(crate) fn parse_number(field: &str, column: Column) -> Result<f64, String> {
+    match field.parse::<f64>() {
+        Ok(number) => check_number(number, column),
+        Err(_) => Err(format!(
+            "\"{}\" is not a number",
+            crate::scene::shorten(field)
+        )),
+    }
+}
+
+/// The number, if a particle can have it in `column`.
+pub(crate) fn check_number(number: f64, column: Column) -> Result<f64, String> {
+    if !number.is_finite() {
+        return Err(format!("{number} is no value for a particle"));
+    }
+    if column.is_positive() && number <= 0.0 {
+        return Err(format!("{number} must be above 0"));
+    }
+    Ok(number)
+}
+
+impl<const D: usize> ParticleList<D> {
+    /// Adds a particle with these values in these columns.
+    pub(crate) fn add(&mut self, columns: &[Column], values: &[f64]) {
+        let mut position = [0.0; D];
+        let mut velocity = None;
+        let mut gradient = None;
+        let mut affine = None;
+        for (column, &value) in columns.iter().zip(values) {
+            match *column {
+                Column::Position(i) => position[i] = value,
+                Column::Velocity(i) => velocity.get_or_insert([0.0; D])[i] = value,
+                Column::Volume => self.volume.push(value),
+                Column::Mass => self.mass.push(value),
+                Column::Jacobian => self.jacobian.push(value),
+                Column::Gradient(i, j) => gradient.get_or_insert([[0.0; D]; D])[i][j] = value,
+                Column::Affine(i, j) => affine.get_or_insert([[0.0; D]; D])[i][j] = value,
+            }
+        }
+        self.position.push(position);
+        self.velocity.extend(velocity);
+        self.deformation_gradient.extend(gradient);
+        self.affine.extend(affine);
+    }
+}
+
+/// Whether the columns of a file go together: positions are there, vectors and matrices are whole.
+pub(crate) fn check_columns<const D: usize>(columns: &[Column]) -> Result<(), String> {
     let group = |column: &Column| match column {
         Column::Position(_) => 1,
         Column::Velocity(_) => 2,
@@ -211,30 +225,18 @@ fn parse_header<const D: usize>(
         Column::Affine(..) => 4,
         Column::Volume | Column::Mass | Column::Jacobian => 0,
     };
-    for (column_name, column) in &known {
+    for (column_name, column) in &known_columns::<D>() {
         let of_group = group(column);
         let wanted =
             of_group == 1 || (of_group > 1 && columns.iter().any(|other| group(other) == of_group));
         if wanted && !columns.contains(column) {
-            return Err(SceneError::at(
-                name,
-                text,
-                start,
-                start + header.len(),
-                format!("there is no column \"{column_name}\""),
-            ));
+            return Err(format!("there is no column \"{column_name}\""));
         }
     }
     if columns.contains(&Column::Jacobian) && columns.contains(&Column::Gradient(0, 0)) {
-        return Err(SceneError::at(
-            name,
-            text,
-            start,
-            start + header.len(),
-            "columns J and F11, F12, .. say the same; give one",
-        ));
+        return Err("columns J and F11, F12, .. say the same; give one".to_owned());
     }
-    Ok(columns)
+    Ok(())
 }
 
 /// Reads an `.npz` file with the arrays of a run's frames: `position`, and optionally `velocity`,
@@ -336,9 +338,9 @@ fn from_arrays<const D: usize>(arrays: &[NpzArray]) -> Result<ParticleList<D>, S
 }
 
 /// Lines with the byte they start at, without their ends.
-struct Lines<'a> {
-    text: &'a str,
-    at: usize,
+pub(crate) struct Lines<'a> {
+    pub(crate) text: &'a str,
+    pub(crate) at: usize,
 }
 
 impl<'a> Iterator for Lines<'a> {

@@ -23,6 +23,7 @@ mod check;
 mod comparison;
 mod controls;
 mod document;
+mod files;
 mod forces;
 mod formula;
 mod keys;
@@ -30,21 +31,24 @@ mod plan;
 mod preset;
 mod read;
 mod reference;
+mod shapes;
 #[cfg(test)]
 mod tests;
 
 pub use comparison::Comparison;
 pub use controls::Controls;
 pub(crate) use document::shorten;
+pub(crate) use files::not_text;
 pub use reference::{docs, docs_of, schema};
 
 use crate::builtin;
-use crate::error::{SceneError, nearest};
+use crate::error::SceneError;
 use document::{Document, Span, json_table};
+use files::{Files, read_text};
 use lahar::{Isa, Simulate, Simulation, TimeStep};
 use plan::Plan;
 use read::Reader;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Bounds on what a scene may ask for; a matter of the machine, not of the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -193,9 +197,6 @@ pub struct Built {
     /// What is suspicious, the scene's own warnings included.
     pub warnings: Vec<String>,
 }
-
-/// Largest scene file \[bytes\]: beyond it, it is something else.
-const LARGEST_FILE: u64 = 64 << 20;
 
 impl Scene {
     /// Reads a scene from its text. `name` is the file's, for messages; particle lists are looked
@@ -632,91 +633,4 @@ fn read_output(scene: &Reader<'_>) -> Result<OutputPlan, SceneError> {
         checkpoint_every: table.integer("checkpoint_every")?,
         picture_size: size.map(|side| side as u32),
     })
-}
-
-/// The text of a scene file, or why there is none.
-fn read_text(path: &str) -> Result<String, SceneError> {
-    let fail = |message: &str| SceneError::of_file(path, message);
-    let info = match std::fs::metadata(path) {
-        Ok(info) => info,
-        Err(error) => {
-            let error = fail(&format!(
-                "this is neither a built-in scene nor a file: {}",
-                io_words(&error)
-            ));
-            let names = builtin::list().iter().map(|scene| scene.name);
-            return Err(match nearest(path, names) {
-                Some(near) => error.hint(format!("did you mean \"{near}\"?")),
-                None => error.hint("`lahar list` names the built-in scenes"),
-            });
-        }
-    };
-    if info.is_dir() {
-        return Err(fail("this is a folder, not a scene file").hint("name the .toml file in it"));
-    }
-    if info.len() > LARGEST_FILE {
-        return Err(fail(&format!(
-            "this is no scene: it has {} MB",
-            info.len() >> 20
-        )));
-    }
-    let bytes = std::fs::read(path).map_err(|error| fail(&io_words(&error)))?;
-    String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        not_text(path, error.as_bytes(), at).hint("a scene is a TOML text file")
-    })
-}
-
-/// An error at the first byte that is no text, number `at`.
-pub(crate) fn not_text(path: &str, bytes: &[u8], at: usize) -> SceneError {
-    /// Bytes shown after it.
-    const AFTER: usize = 100;
-    let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(at + AFTER)]);
-    let message = format!("this is not a text file: byte {at} is no UTF-8");
-    SceneError::at(path, &shown, at, at + 1, message)
-}
-
-/// Where the files that a scene names are.
-pub(crate) enum Files<'a> {
-    /// Beside the scene's own.
-    Folder(&'a Path),
-    /// In the program.
-    Embedded(&'static [(&'static str, &'static str)]),
-}
-
-impl Files<'_> {
-    /// The content of a file, or why there is none.
-    pub(crate) fn bytes(&self, name: &str) -> Result<Vec<u8>, String> {
-        match self {
-            Self::Folder(folder) => {
-                std::fs::read(folder.join(name)).map_err(|error| io_words(&error))
-            }
-            Self::Embedded(files) => match files.iter().find(|(file, _)| *file == name) {
-                Some((_, text)) => Ok(text.as_bytes().to_vec()),
-                None => Err("built-in scenes have no such file".to_owned()),
-            },
-        }
-    }
-
-    /// Its path, if it is there.
-    pub(crate) fn path(&self, name: &str) -> Result<PathBuf, String> {
-        match self {
-            Self::Folder(folder) => match std::fs::metadata(folder.join(name)) {
-                Ok(info) if info.is_file() => Ok(folder.join(name)),
-                Ok(_) => Err("it is a folder".to_owned()),
-                Err(error) => Err(io_words(&error)),
-            },
-            Self::Embedded(_) => Err("built-in scenes have no such file".to_owned()),
-        }
-    }
-}
-
-/// What the system says, without its number.
-fn io_words(error: &std::io::Error) -> String {
-    match error.kind() {
-        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        std::io::ErrorKind::PermissionDenied => "no permission to read it".to_owned(),
-        std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
-        kind => kind.to_string(),
-    }
 }

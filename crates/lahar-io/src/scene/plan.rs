@@ -4,11 +4,12 @@ use super::forces::{expect, lattice, read_forces};
 use super::formula::{Formulas, Of};
 use super::keys::MODULI;
 use super::read::Reader;
+use super::shapes::read_shape_source;
 use super::{Files, Limits};
 use crate::error::{SceneError, nearest};
 use crate::particle_list::ParticleList;
 use crate::sampling::{Sampling, expected_count};
-use crate::shape::{Bounds, Region, Shape, area, crossing};
+use crate::shape::{Bounds, Region, Shape};
 use lahar::material::{
     Corotated, Dust, Eos, Fluid, HardeningFrom, JacobianUpdate, NeoHookean, Snow, lame,
 };
@@ -503,7 +504,7 @@ fn read_domain<const D: usize>(
     })
 }
 
-const AXES: [&str; 3] = ["x", "y", "z"];
+pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], ["back", "front"]];
 
 /// Whether a side is a whole number of cells, but for the rounding of decimal fractions.
@@ -804,7 +805,7 @@ fn read_body<const D: usize>(
     let source = match (table.opt_table("shape"), table.opt_text("particles")) {
         (Some(_), Some(_)) => return Err(table.error_at_key("particles", "a body has a \"shape\" or \"particles\", not both")),
         (None, None) => return Err(table.error(format!("body \"{name}\" has no shape")).hint("add, for instance, shape = { box = { min = [0.0, 0.0], max = [1.0, 1.0] } }, or particles = \"start.csv\"")),
-        (Some(shape), None) => read_shape_source(&name, table, &shape, clip, dx)?,
+        (Some(shape), None) => read_shape_source(&name, table, &shape, (clip, dx), (files, limits))?,
         (None, Some(path)) => Source::List(read_list(table, path, volume, &clip, (files, limits), warnings)?),
     };
     Ok(Body {
@@ -838,173 +839,9 @@ fn read_gradient<const D: usize>(table: &Reader<'_>) -> Result<[[f64; D]; D], Sc
     Ok(gradient)
 }
 
-fn read_shape_source<const D: usize>(
-    name: &str,
-    body: &Reader<'_>,
-    table: &Reader<'_>,
-    clip: Bounds<D>,
-    dx: f64,
-) -> Result<Source<D>, SceneError> {
-    let sampling = match body.text("sampling")? {
-        "lattice" => Sampling::Lattice,
-        "random" => Sampling::Random,
-        "poisson" => Sampling::Poisson,
-        _ => Sampling::Jittered,
-    };
-    let amounts: Vec<&str> = ["particles_per_cell", "spacing", "count"]
-        .into_iter()
-        .filter(|key| body.has(key))
-        .collect();
-    if let [first, second, ..] = amounts[..] {
-        return Err(body.error_at_key(
-            second,
-            format!("\"{first}\" and \"{second}\" say the same; give one"),
-        ));
-    }
-    let shape = read_shape(table, clip)?;
-    let region = Region::new(shape, clip);
-    if !(region.volume() > 0.0) {
-        let bounds = region.shape().bounds();
-        let error = body.error_at("shape", format!("body \"{name}\" lies outside the domain"));
-        return Err(match region.shape() {
-            Shape::HalfSpace { .. } => {
-                error.hint("move the point, or turn the normal round: it points out of the body")
-            }
-            _ => error.hint(format!(
-                "it reaches from {} to {}, the domain from {} to {}",
-                point(&bounds.min),
-                point(&bounds.max),
-                point(&clip.min),
-                point(&clip.max)
-            )),
-        });
-    }
-    let cells = region.volume() / dx.powi(D as i32);
-    let count = body.opt_integer("count").map(|count| count as usize);
-    if count.is_some() && !matches!(sampling, Sampling::Random | Sampling::Poisson) {
-        return Err(body.error_at_key(
-            "count",
-            format!(
-                "\"count\" is for sampling = \"random\" or \"poisson\", this body has \"{}\"",
-                sampling.name()
-            ),
-        ));
-    }
-    let per_cell = match (count, body.opt_number("particles_per_cell")) {
-        (Some(count), _) => count as f64 / cells,
-        (None, Some(per_cell)) => per_cell,
-        (None, None) => f64::from(1 << D),
-    };
-    let spacing = body
-        .opt_number("spacing")
-        .unwrap_or(dx / per_cell.powf(1.0 / D as f64));
-    if region.volume() / spacing.powi(D as i32) < 0.5 {
-        let key = amounts.first().copied().unwrap_or("shape");
-        let error = body.error_at(
-            key,
-            format!(
-                "body \"{name}\" comes to no particle: its volume is {:.3e}, a particle's {:.3e}",
-                region.volume(),
-                spacing.powi(D as i32)
-            ),
-        );
-        return Err(error.hint("make the body larger, or dx or spacing smaller"));
-    }
-    Ok(Source::Shape {
-        region,
-        spacing,
-        count,
-        sampling,
-    })
-}
-
-fn point(p: &[f64]) -> String {
+pub(super) fn point(p: &[f64]) -> String {
     let parts: Vec<String> = p.iter().map(|x| tidy(*x).to_string()).collect();
     format!("({})", parts.join(", "))
-}
-
-fn read_shape<const D: usize>(table: &Reader<'_>, clip: Bounds<D>) -> Result<Shape<D>, SceneError> {
-    let kinds: Vec<&str> = ["box", "ball", "half_space", "polygon"]
-        .into_iter()
-        .filter(|kind| table.has(kind))
-        .collect();
-    let kind = match kinds[..] {
-        [kind] => kind,
-        [] => {
-            return Err(table
-                .error("this shape is empty")
-                .hint("give one of: box, ball, half_space, polygon"));
-        }
-        [_, second, ..] => {
-            return Err(table
-                .error_at_key(second, "a shape is one of box, ball, half_space, polygon")
-                .hint("make a second body of it"));
-        }
-    };
-    let Some(inner) = table.opt_table(kind) else {
-        return Err(table.error_at(kind, format!("\"{kind}\" must be a table")));
-    };
-    match kind {
-        "box" => {
-            let (min, max): ([f64; D], [f64; D]) = (inner.vector("min")?, inner.vector("max")?);
-            if let Some(i) = (0..D).find(|&i| !(max[i] > min[i])) {
-                return Err(inner.error_at(
-                    "max",
-                    format!(
-                        "the box has no extent along {}: max {} is not above min {}",
-                        AXES[i], max[i], min[i]
-                    ),
-                ));
-            }
-            Ok(Shape::Box { min, max })
-        }
-        "ball" => Ok(Shape::Ball {
-            center: inner.vector("center")?,
-            radius: inner.number("radius")?,
-        }),
-        "half_space" => {
-            let normal: [f64; D] = inner.vector("normal")?;
-            let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-            if !(length > 0.0 && length.is_finite()) {
-                return Err(inner.error_at("normal", "the normal has no direction"));
-            }
-            if !clip.volume().is_finite() {
-                return Err(
-                    table.error_at_key("half_space", "a half-space needs a [domain] to end at")
-                );
-            }
-            Ok(Shape::HalfSpace {
-                point: inner.vector("point")?,
-                normal: normal.map(|n| n / length),
-            })
-        }
-        _ => {
-            if D == 3 {
-                return Err(table
-                    .error_at_key("polygon", "polygons are for 2D only")
-                    .hint("this scene has dimension = 3"));
-            }
-            let points = inner.opt_rows::<D>("points").unwrap_or_default();
-            /// Corners up to which sides are tested against each other.
-            const TESTED: usize = 4000;
-            if points.len() <= TESTED
-                && let Some((i, j)) = crossing(&points)
-            {
-                return Err(inner.error_at("points", format!("the polygon crosses itself: the sides from point {i} and from point {j} (from 0)")));
-            }
-            let bounds = Shape::Polygon {
-                points: points.clone(),
-            }
-            .bounds();
-            if points.len() < 3 || !(area(&points).abs() > 1e-12 * bounds.volume()) {
-                return Err(inner.error_at(
-                    "points",
-                    format!("a polygon of {} points in a line has no area", points.len()),
-                ));
-            }
-            Ok(Shape::Polygon { points })
-        }
-    }
 }
 
 fn read_list<const D: usize>(
@@ -1041,17 +878,24 @@ fn read_list<const D: usize>(
             "particle lists are found from the scene's folder"
         })
     };
-    let mut list = if path.ends_with(".csv") {
-        let bytes = files.bytes(path).map_err(cannot)?;
+    let lower = path.to_ascii_lowercase();
+    let mut list = if lower.ends_with(".csv") {
+        let bytes = files.bytes(path, limits.memory).map_err(cannot)?;
         match core::str::from_utf8(&bytes) {
-            Ok(text) => crate::particle_list::parse_csv(text, path)?,
+            Ok(text) => {
+                let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+                crate::particle_list::parse_csv(text, path)?
+            }
             Err(error) => return Err(super::not_text(path, &bytes, error.valid_up_to())),
         }
-    } else if path.ends_with(".npz") {
+    } else if lower.ends_with(".ply") {
+        let bytes = files.bytes(path, limits.memory).map_err(cannot)?;
+        crate::ply::parse_ply(&bytes, path)?
+    } else if lower.ends_with(".npz") {
         let file = files.path(path).map_err(cannot)?;
         crate::particle_list::read_npz(&file, limits.memory)?
     } else {
-        return Err(table.error_at("particles", "a particle list is a .csv or .npz file"));
+        return Err(table.error_at("particles", "a particle list is a .csv, .npz or .ply file"));
     };
     if list.position.is_empty() {
         return Err(SceneError::of_file(

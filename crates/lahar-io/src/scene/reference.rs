@@ -9,6 +9,8 @@ use serde_json::{Map, Value, json};
 pub fn schema() -> Value {
     let mut schema = object(&super::keys::SCENE);
     if let Some(map) = schema.as_object_mut() {
+        let shape = object(&super::keys::SHAPE);
+        map.insert("$defs".to_owned(), json!({ "shape": shape }));
         map.insert(
             "$schema".to_owned(),
             json!("https://json-schema.org/draft/2020-12/schema"),
@@ -40,6 +42,15 @@ fn object(section: &Section) -> Value {
         }
     }
     json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
+}
+
+/// A table of another table; shapes contain shapes, and stand once for all.
+fn table_of(section: &Section) -> Value {
+    if section.name == super::keys::SHAPE.name {
+        json!({ "$ref": "#/$defs/shape" })
+    } else {
+        object(section)
+    }
 }
 
 /// What editors show: the sentence, the unit, and what holds when the key is absent.
@@ -103,9 +114,9 @@ fn value_of(kind: Kind) -> Value {
         Kind::OneOf(kinds) => {
             json!({ "anyOf": kinds.iter().map(|kind| value_of(*kind)).collect::<Vec<_>>() })
         }
-        Kind::Table(section) => object(section),
+        Kind::Table(section) => table_of(section),
         Kind::Tables(section) => {
-            json!({ "type": "array", "items": object(section), "minItems": 1 })
+            json!({ "type": "array", "items": table_of(section), "minItems": 1 })
         }
         Kind::Materials => {
             json!({ "type": "object", "minProperties": 1, "additionalProperties": material() })

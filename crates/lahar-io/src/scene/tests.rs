@@ -43,10 +43,16 @@ fn completed(block: &str) -> String {
     text
 }
 
-/// A folder with the file that the page's example of a particle list names.
+/// A folder with the files that the page's examples name.
 fn folder(page: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("start.csv"), blocks(page, "csv")[0]).unwrap();
+    for (file, language) in [
+        ("start.csv", "csv"),
+        ("more.ply", "ply"),
+        ("gem.obj", "obj"),
+    ] {
+        std::fs::write(folder.path().join(file), blocks(page, language)[0]).unwrap();
+    }
     folder
 }
 

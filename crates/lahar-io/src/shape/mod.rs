@@ -1,6 +1,18 @@
 //! The space that a body fills: a shape, cut off at the domain.
 
-use core::f64::consts::{FRAC_PI_2, PI};
+mod mesh;
+mod motion;
+mod volume;
+
+pub use mesh::{Mesh, MeshError};
+pub use motion::Motion;
+
+use core::f64::consts::PI;
+use std::sync::Arc;
+pub(crate) use volume::area;
+use volume::{
+    ball_volume, clip_polygon, clipped_ball, counted, half_space_bounds, half_space_volume,
+};
 
 /// A shape in `D` dimensions.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +42,35 @@ pub enum Shape<const D: usize> {
     Polygon {
         /// Its corners in order \[m\].
         points: Vec<[f64; D]>,
+    },
+    /// All within a radius of a line between two points; its ends are round if it is a capsule, else
+    /// flat. In 2D a capsule is a strip.
+    Rod {
+        /// One end \[m\].
+        from: [f64; D],
+        /// The other \[m\].
+        to: [f64; D],
+        /// Distance of the surface from the line \[m\].
+        radius: f64,
+        /// Whether there are half-balls beyond the ends.
+        round: bool,
+    },
+    /// The inside of a closed surface, in 3D.
+    Mesh(Arc<Mesh>),
+    /// All that is in any of them.
+    Union(Vec<Shape<D>>),
+    /// All that is in every one of them.
+    Intersection(Vec<Shape<D>>),
+    /// All that is in the first and in no other.
+    Difference(Vec<Shape<D>>),
+    /// A shape that was scaled, turned or moved.
+    Moved {
+        /// The shape as it was.
+        shape: Box<Shape<D>>,
+        /// From where it was to where it is.
+        motion: Motion<D>,
+        /// A box around where it is \[m\].
+        bounds: Bounds<D>,
     },
 }
 
@@ -116,6 +157,28 @@ impl<const D: usize> Shape<D> {
                 max: center.map(|c| c + radius),
             },
             Self::HalfSpace { .. } => Bounds::EVERYTHING,
+            Self::Rod {
+                from, to, radius, ..
+            } => Bounds {
+                min: core::array::from_fn(|i| from[i].min(to[i]) - radius),
+                max: core::array::from_fn(|i| from[i].max(to[i]) + radius),
+            },
+            Self::Mesh(mesh) => {
+                let (min, max) = mesh.bounds();
+                Bounds {
+                    min: core::array::from_fn(|i| min[i.min(2)]),
+                    max: core::array::from_fn(|i| max[i.min(2)]),
+                }
+            }
+            Self::Union(shapes) => {
+                let all: Vec<Bounds<D>> = shapes.iter().map(Self::bounds).collect();
+                Bounds::around(&all)
+            }
+            Self::Intersection(shapes) => shapes.iter().fold(Bounds::EVERYTHING, |sum, shape| {
+                sum.intersection(&shape.bounds())
+            }),
+            Self::Difference(shapes) => shapes.first().map_or(Bounds::EVERYTHING, Self::bounds),
+            Self::Moved { bounds, .. } => *bounds,
             Self::Polygon { points } => points.iter().fold(
                 Bounds {
                     min: [f64::INFINITY; D],
@@ -144,6 +207,102 @@ impl<const D: usize> Shape<D> {
                 (0..D).map(|i| (p[i] - point[i]) * normal[i]).sum::<f64>() <= 0.0
             }
             Self::Polygon { points } => in_polygon(points, p),
+            Self::Rod {
+                from,
+                to,
+                radius,
+                round,
+            } => in_rod(p, (from, to), *radius, *round),
+            Self::Mesh(mesh) => {
+                mesh.contains(core::array::from_fn(|i| if i < D { p[i] } else { 0.0 }))
+            }
+            Self::Union(shapes) => shapes.iter().any(|shape| shape.contains(p)),
+            Self::Intersection(shapes) => shapes.iter().all(|shape| shape.contains(p)),
+            Self::Difference(shapes) => shapes.split_first().is_some_and(|(first, others)| {
+                first.contains(p) && !others.iter().any(|shape| shape.contains(p))
+            }),
+            Self::Moved {
+                shape,
+                motion,
+                bounds,
+            } => bounds.contains(p) && shape.contains(&motion.back(p)),
+        }
+    }
+
+    /// The shape after `motion`.
+    #[must_use]
+    pub fn moved(self, motion: Motion<D>) -> Self {
+        let before = self.bounds();
+        let bounds = if before.volume().is_finite() {
+            let corners: Vec<Bounds<D>> = before
+                .corners()
+                .map(|corner| motion.forth(&corner))
+                .map(|p| Bounds { min: p, max: p })
+                .collect();
+            Bounds::around(&corners)
+        } else {
+            Bounds::EVERYTHING
+        };
+        Self::Moved {
+            shape: Box::new(self),
+            motion,
+            bounds,
+        }
+    }
+
+    /// Its volume \[m³; m² in 2D\], if a formula has it.
+    fn exact_volume(&self) -> Option<f64> {
+        match self {
+            Self::Box { .. } => Some(self.bounds().volume()),
+            Self::Ball { radius, .. } => Some(ball_volume::<D>(*radius)),
+            Self::Polygon { points } => Some(area(points).abs()),
+            Self::Rod {
+                from,
+                to,
+                radius,
+                round,
+            } => {
+                let length = (0..D)
+                    .map(|i| (to[i] - from[i]).powi(2))
+                    .sum::<f64>()
+                    .sqrt();
+                let section = if D == 2 {
+                    2.0 * radius
+                } else {
+                    PI * radius * radius
+                };
+                let ends = if *round {
+                    ball_volume::<D>(*radius)
+                } else {
+                    0.0
+                };
+                Some(section * length + ends)
+            }
+            Self::Mesh(mesh) => mesh.exact_volume(),
+            Self::Moved { shape, motion, .. } => Some(shape.exact_volume()? * motion.stretch()),
+            Self::Union(shapes) => {
+                // Copies that do not touch.
+                let bounds: Vec<Bounds<D>> = shapes.iter().map(Self::bounds).collect();
+                let apart = |a: &Bounds<D>, b: &Bounds<D>| {
+                    (0..D).any(|i| a.min[i] >= b.max[i] || b.min[i] >= a.max[i])
+                };
+                let all_apart =
+                    (1..bounds.len()).all(|i| (0..i).all(|j| apart(&bounds[i], &bounds[j])));
+                (all_apart && bounds.len() <= 100)
+                    .then(|| shapes.iter().map(Self::exact_volume).sum())?
+            }
+            Self::HalfSpace { .. } | Self::Intersection(_) | Self::Difference(_) => None,
+        }
+    }
+
+    /// Primitive shapes in it.
+    pub(crate) fn parts(&self) -> usize {
+        match self {
+            Self::Union(shapes) | Self::Intersection(shapes) | Self::Difference(shapes) => {
+                shapes.iter().map(Self::parts).sum()
+            }
+            Self::Moved { shape, .. } => shape.parts(),
+            _ => 1,
         }
     }
 }
@@ -163,15 +322,18 @@ impl<const D: usize> Region<D> {
         let whole = shape.bounds();
         let mut bounds = whole.intersection(&clip);
         let inside = clip.encloses(&whole);
-        let volume = match &shape {
-            Shape::Box { .. } => bounds.volume(),
-            Shape::Ball { center, radius } if inside => ball_volume::<D>(*radius, center),
-            Shape::Ball { center, radius } => clipped_ball(center, *radius, &bounds),
-            Shape::HalfSpace { point, normal } => {
-                bounds = half_space_bounds(point, normal, &clip);
-                half_space_volume(point, normal, &clip)
-            }
-            Shape::Polygon { points } => area(&clip_polygon(points, &clip)).abs(),
+        if let Shape::HalfSpace { point, normal } = &shape
+            && clip.volume().is_finite()
+        {
+            bounds = half_space_bounds(point, normal, &clip);
+        }
+        let volume = match (&shape, shape.exact_volume()) {
+            (_, Some(exact)) if inside => exact,
+            (Shape::Box { .. }, _) => bounds.volume(),
+            (Shape::Ball { center, radius }, _) => clipped_ball(center, *radius, &bounds),
+            (Shape::HalfSpace { point, normal }, _) => half_space_volume(point, normal, &clip),
+            (Shape::Polygon { points }, _) => area(&clip_polygon(points, &clip)).abs(),
+            _ => counted(&shape, &bounds),
         };
         Self {
             shape,
@@ -186,12 +348,14 @@ impl<const D: usize> Region<D> {
         &self.shape
     }
 
-    /// A box around it \[m\]; the smallest but for cut balls and polygons.
+    /// A box around it \[m\].
     pub fn bounds(&self) -> &Bounds<D> {
         &self.bounds
     }
 
-    /// Its volume \[m³; m² in 2D\]: exact, but for balls that are cut (1e-6 of the whole).
+    /// Its volume \[m³; m² in 2D\]: exact for whole boxes, balls, polygons, rods and meshes, and for
+    /// cut boxes, polygons and half-spaces; to 1e-6 of the whole for cut balls; else counted on a
+    /// lattice.
     pub fn volume(&self) -> f64 {
         self.volume
     }
@@ -207,172 +371,25 @@ impl<const D: usize> Region<D> {
     }
 }
 
-fn ball_volume<const D: usize>(radius: f64, _: &[f64; D]) -> f64 {
-    if D == 2 {
-        PI * radius * radius
-    } else {
-        4.0 / 3.0 * PI * radius.powi(3)
-    }
-}
-
-/// Intervals of Simpson's rule along an axis: errors below 1e-6 of the ball with the kinks that
-/// faces of the box make.
-const INTERVALS: usize = 2048;
-
-/// Volume of the ball in the box, by slices along the last axis.
-fn clipped_ball<const D: usize>(center: &[f64; D], radius: f64, bounds: &Bounds<D>) -> f64 {
-    if (0..D).any(|i| bounds.side(i) <= 0.0) {
-        return 0.0;
-    }
-    if D == 2 {
-        return clipped_disc(
-            [center[0], center[1]],
-            radius,
-            [bounds.min[0], bounds.min[1]],
-            [bounds.max[0], bounds.max[1]],
-            INTERVALS,
-        );
-    }
-    let z = D - 1;
-    simpson(
-        center[z],
-        radius,
-        bounds.min[z],
-        bounds.max[z],
-        INTERVALS / 4,
-        |slice| {
-            clipped_disc(
-                [center[0], center[1]],
-                slice,
-                [bounds.min[0], bounds.min[1]],
-                [bounds.max[0], bounds.max[1]],
-                INTERVALS / 4,
-            )
-        },
-    )
-}
-
-fn clipped_disc(
-    center: [f64; 2],
+/// Whether `p` is within `radius` of the line between two points, and between its flat ends.
+fn in_rod<const D: usize>(
+    p: &[f64; D],
+    (from, to): (&[f64; D], &[f64; D]),
     radius: f64,
-    min: [f64; 2],
-    max: [f64; 2],
-    intervals: usize,
-) -> f64 {
-    simpson(center[1], radius, min[1], max[1], intervals, |half| {
-        ((center[0] + half).min(max[0]) - (center[0] - half).max(min[0])).max(0.0)
-    })
-}
-
-/// ∫ f(√(r² − (y−c)²)) dy over `low..high`, in y = c + r sin θ, where the ends of a ball are smooth.
-fn simpson(
-    center: f64,
-    radius: f64,
-    low: f64,
-    high: f64,
-    intervals: usize,
-    f: impl Fn(f64) -> f64,
-) -> f64 {
-    let angle = |y: f64| {
-        ((y - center) / radius)
-            .clamp(-1.0, 1.0)
-            .asin()
-            .clamp(-FRAC_PI_2, FRAC_PI_2)
-    };
-    let (from, to) = (angle(low), angle(high));
-    if !(to > from) {
-        return 0.0;
-    }
-    let step = (to - from) / intervals as f64;
-    let sum: f64 = (0..=intervals)
-        .map(|i| {
-            let cos = (from + i as f64 * step).cos().max(0.0);
-            let weight = if i == 0 || i == intervals {
-                1.0
-            } else if i % 2 == 1 {
-                4.0
-            } else {
-                2.0
-            };
-            weight * f(radius * cos) * radius * cos
-        })
-        .sum();
-    sum * step / 3.0
-}
-
-/// Volume of a half-space in a box: Σ over corners v of (−1)^|v| (c − n·v)₊ᵈ / (d! Π n), over the d
-/// axes that the normal leans to, the box mapped to the unit box and the normal made positive.
-fn half_space_volume<const D: usize>(point: &[f64; D], normal: &[f64; D], clip: &Bounds<D>) -> f64 {
-    let mut c = (0..D).map(|i| point[i] * normal[i]).sum::<f64>();
-    let mut slopes = Vec::new();
+    round: bool,
+) -> bool {
+    let (mut along, mut squared) = (0.0, 0.0);
     for i in 0..D {
-        let slope = normal[i] * clip.side(i);
-        c -= normal[i]
-            * if slope >= 0.0 {
-                clip.min[i]
-            } else {
-                clip.max[i]
-            };
-        slopes.push(slope.abs());
+        along += (p[i] - from[i]) * (to[i] - from[i]);
+        squared += (to[i] - from[i]).powi(2);
     }
-    let steepest = slopes.iter().fold(0.0_f64, |a, &b| a.max(b));
-    for slope in slopes.iter().filter(|&&slope| slope <= 1e-7 * steepest) {
-        c -= 0.5 * slope;
+    let part = if squared > 0.0 { along / squared } else { 0.0 };
+    if !round && !(0.0..=1.0).contains(&part) {
+        return false;
     }
-    slopes.retain(|&slope| slope > 1e-7 * steepest);
-    let d = slopes.len();
-    let mut sum = 0.0;
-    for bits in 0..1_usize << d {
-        let reach: f64 = (0..d)
-            .filter(|i| bits >> i & 1 == 1)
-            .map(|i| slopes[i])
-            .sum();
-        let sign = if bits.count_ones() % 2 == 0 {
-            1.0
-        } else {
-            -1.0
-        };
-        sum += sign * (c - reach).max(0.0).powi(d as i32);
-    }
-    let below: f64 = (1..=d).map(|i| i as f64).product::<f64>() * slopes.iter().product::<f64>();
-    clip.volume() * (sum / below).clamp(0.0, 1.0)
-}
-
-/// The smallest box around a half-space in a box: around the corners inside and the points where
-/// edges cross the plane.
-fn half_space_bounds<const D: usize>(
-    point: &[f64; D],
-    normal: &[f64; D],
-    clip: &Bounds<D>,
-) -> Bounds<D> {
-    let height = |p: &[f64; D]| (0..D).map(|i| (p[i] - point[i]) * normal[i]).sum::<f64>();
-    let mut bounds = Bounds {
-        min: [f64::INFINITY; D],
-        max: [f64::NEG_INFINITY; D],
-    };
-    let mut take = |p: [f64; D]| {
-        for i in 0..D {
-            bounds.min[i] = bounds.min[i].min(p[i]);
-            bounds.max[i] = bounds.max[i].max(p[i]);
-        }
-    };
-    for corner in clip.corners() {
-        let here = height(&corner);
-        if here > 0.0 {
-            continue;
-        }
-        take(corner);
-        for i in 0..D {
-            let mut other = corner;
-            other[i] = clip.min[i] + clip.max[i] - corner[i];
-            let there = height(&other);
-            if there > 0.0 {
-                other[i] = corner[i] + (other[i] - corner[i]) * here / (here - there);
-                take(other);
-            }
-        }
-    }
-    bounds
+    let part = part.clamp(0.0, 1.0);
+    let distance = (0..D).map(|i| (p[i] - from[i] - part * (to[i] - from[i])).powi(2));
+    distance.sum::<f64>() <= radius * radius
 }
 
 fn in_polygon<const D: usize>(points: &[[f64; D]], p: &[f64; D]) -> bool {
@@ -388,52 +405,6 @@ fn in_polygon<const D: usize>(points: &[[f64; D]], p: &[f64; D]) -> bool {
         before = i;
     }
     inside
-}
-
-/// Sutherland and Hodgman: parts that a concave polygon falls into stay joined by edges along the
-/// box, which have no area.
-fn clip_polygon<const D: usize>(points: &[[f64; D]], clip: &Bounds<D>) -> Vec<[f64; D]> {
-    let mut points = points.to_vec();
-    for (axis, sign, at) in [
-        (0, 1.0, clip.min[0]),
-        (0, -1.0, clip.max[0]),
-        (1, 1.0, clip.min[1]),
-        (1, -1.0, clip.max[1]),
-    ] {
-        if !at.is_finite() {
-            continue;
-        }
-        let depth = |p: &[f64; D]| sign * (p[axis] - at);
-        let mut kept = Vec::new();
-        for i in 0..points.len() {
-            let (a, b) = (points[i], points[(i + 1) % points.len()]);
-            let (da, db) = (depth(&a), depth(&b));
-            if da >= 0.0 {
-                kept.push(a);
-            }
-            if (da >= 0.0) != (db >= 0.0) {
-                kept.push(core::array::from_fn(|k| {
-                    a[k] + (b[k] - a[k]) * da / (da - db)
-                }));
-            }
-        }
-        points = kept;
-    }
-    points
-}
-
-/// Area of a polygon \[m²\], positive if counter-clockwise.
-pub(crate) fn area<const D: usize>(points: &[[f64; D]]) -> f64 {
-    let Some(origin) = points.first() else {
-        return 0.0;
-    };
-    (0..points.len())
-        .map(|i| {
-            let (a, b) = (points[i], points[(i + 1) % points.len()]);
-            0.5 * ((a[0] - origin[0]) * (b[1] - origin[1])
-                - (b[0] - origin[0]) * (a[1] - origin[1]))
-        })
-        .sum()
 }
 
 /// The first two sides of a polygon that cross, by the numbers of their first corners.

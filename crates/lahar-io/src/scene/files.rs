@@ -1,0 +1,136 @@
+//! Files that a scene is, or names. Only plain files are read, and no more of them than is allowed:
+//! a device or a pipe would never end.
+
+use crate::builtin;
+use crate::error::{SceneError, nearest};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+/// Largest scene file \[bytes\]: beyond it, it is something else.
+const LARGEST_SCENE: u64 = 16 << 20;
+
+/// The text of a scene file, or why there is none.
+pub(crate) fn read_text(path: &str) -> Result<String, SceneError> {
+    let fail = |message: &str| SceneError::of_file(path, message);
+    if path.is_empty() {
+        return Err(
+            fail("the name of the scene is empty").hint("`lahar list` names the built-in scenes")
+        );
+    }
+    let info = match std::fs::metadata(path) {
+        Ok(info) => info,
+        Err(error) => {
+            let error = fail(&format!(
+                "this is neither a built-in scene nor a file: {}",
+                io_words(&error)
+            ));
+            let names = builtin::list().iter().map(|scene| scene.name);
+            return Err(match nearest(path, names) {
+                Some(near) => error.hint(format!("did you mean \"{near}\"?")),
+                None => error.hint("`lahar list` names the built-in scenes"),
+            });
+        }
+    };
+    if info.is_dir() {
+        return Err(fail("this is a folder, not a scene file").hint("name the .toml file in it"));
+    }
+    let bytes = read_plain(Path::new(path), LARGEST_SCENE).map_err(|reason| fail(&reason))?;
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        not_text(path, error.as_bytes(), at).hint("a scene is a TOML text file")
+    })?;
+    // Some editors begin a file with a mark of its byte order.
+    Ok(match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_owned(),
+        None => text,
+    })
+}
+
+/// An error at the first byte that is no text, number `at`.
+pub(crate) fn not_text(path: &str, bytes: &[u8], at: usize) -> SceneError {
+    /// Bytes shown after it.
+    const AFTER: usize = 100;
+    let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(at + AFTER)]);
+    let message = format!("this is not a text file: byte {at} is no UTF-8");
+    SceneError::at(path, &shown, at, at + 1, message)
+}
+
+/// Where the files that a scene names are.
+pub(crate) enum Files<'a> {
+    /// Beside the scene's own.
+    Folder(&'a Path),
+    /// In the program.
+    Embedded(&'static [(&'static str, &'static str)]),
+}
+
+impl Files<'_> {
+    /// The content of a file of at most `limit` bytes, or why there is none.
+    pub(crate) fn bytes(&self, name: &str, limit: u64) -> Result<Vec<u8>, String> {
+        match self {
+            Self::Folder(folder) => read_plain(&folder.join(name), limit),
+            Self::Embedded(files) => match files.iter().find(|(file, _)| *file == name) {
+                Some((_, text)) => Ok(text.as_bytes().to_vec()),
+                None => Err("built-in scenes have no such file".to_owned()),
+            },
+        }
+    }
+
+    /// Its path, if it is there.
+    pub(crate) fn path(&self, name: &str) -> Result<PathBuf, String> {
+        match self {
+            Self::Folder(folder) => {
+                check_plain(&folder.join(name))?;
+                Ok(folder.join(name))
+            }
+            Self::Embedded(_) => Err("built-in scenes have no such file".to_owned()),
+        }
+    }
+}
+
+/// Whether there is a plain file, or why not; its length.
+fn check_plain(path: &Path) -> Result<u64, String> {
+    let info = std::fs::metadata(path).map_err(|error| io_words(&error))?;
+    if info.is_file() {
+        Ok(info.len())
+    } else if info.is_dir() {
+        Err("it is a folder".to_owned())
+    } else {
+        Err("it is a device or a pipe, not a file".to_owned())
+    }
+}
+
+/// All of a plain file, if it has no more than `limit` bytes.
+fn read_plain(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
+    let too_large = |length: u64| {
+        Err(format!(
+            "it has {} MB or more, {} are read at the most",
+            length >> 20,
+            limit >> 20
+        ))
+    };
+    let length = check_plain(path)?;
+    if length > limit {
+        return too_large(length);
+    }
+    let file = File::open(path).map_err(|error| io_words(&error))?;
+    let mut bytes = Vec::with_capacity(length as usize);
+    // It may have grown meanwhile, or be one of those that never say how long they are.
+    file.take(limit + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| io_words(&error))?;
+    if bytes.len() as u64 > limit {
+        return too_large(limit);
+    }
+    Ok(bytes)
+}
+
+/// What the system says, without its number.
+fn io_words(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "no permission to read it".to_owned(),
+        std::io::ErrorKind::IsADirectory => "it is a folder".to_owned(),
+        kind => kind.to_string(),
+    }
+}
