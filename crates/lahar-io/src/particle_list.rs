@@ -145,6 +145,9 @@ fn parse_header<const D: usize>(
                     AXES[..D].join(",")
                 )));
             }
+            if field.contains(';') {
+                return Err(error.hint("columns are parted by commas, decimals by points"));
+            }
             if D == 2 && ["z", "vz"].contains(&field) {
                 return Err(error.hint("this scene has dimension = 2"));
             }

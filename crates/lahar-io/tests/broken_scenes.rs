@@ -224,7 +224,133 @@ const BROKEN: &[(&str, &str, &str)] = &[
         "[[forces]]\nacelleration = [0.0, 1.0]\n\n[domain]",
     ),
     ("a shape that is none", "{ box =", "{ bx ="),
-    ("a shape to come", "{ box =", "{ cylinder ="),
+    (
+        "a cylinder in 2D",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "cylinder = { from = [0.0, 0.0], to = [0.5, 0.5], radius = 0.1 }",
+    ),
+    (
+        "a mesh in 2D",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "mesh = \"ball.stl\"",
+    ),
+    (
+        "an empty union",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "union = []",
+    ),
+    (
+        "a union of numbers",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "union = [1, 2]",
+    ),
+    (
+        "a typo in a part of a union",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "union = [{ ball = { center = [0.2, 0.2], radus = 0.1 } }]",
+    ),
+    (
+        "a difference that leaves nothing",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "difference = [{ box = { min = [0.0, 0.0], max = [0.5, 0.5] } }, { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }]",
+    ),
+    (
+        "a union too deep",
+        "{ box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ box = { min = [0.0, 0.0], max = [0.5, 0.5] } }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }",
+    ),
+    (
+        "a union far too deep",
+        "{ box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ union = [{ box = { min = [0.0, 0.0], max = [0.5, 0.5] } }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }] }",
+    ),
+    (
+        "a scale of zero",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, scale = 0.0",
+    ),
+    (
+        "a negative scale",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, scale = [1.0, -1.0]",
+    ),
+    (
+        "about without a turn",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, about = [0.0, 0.0]",
+    ),
+    (
+        "half a copy",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, copies = { count = [1.5, 1], step = [0.1, 0.1] }",
+    ),
+    (
+        "copies in one place",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, copies = { count = [3, 1], step = [0.0, 0.1] }",
+    ),
+    (
+        "a million copies",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, copies = { count = [1000, 1000], step = [0.001, 0.001] }",
+    ),
+    (
+        "a turn as in 3D",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, rotate = [0.0, 0.0, 30.0]",
+    ),
+    (
+        "a negative radius",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "ball = { center = [0.2, 0.2], radius = -0.1 }",
+    ),
+    (
+        "a polygon in a line",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "polygon = { points = [[0.0, 0.0], [0.5, 0.5], [0.2, 0.2]] }",
+    ),
+    (
+        "a capsule without an end",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "capsule = { from = [0.0, 0.0], radius = 0.1 }",
+    ),
+    (
+        "a normal without a direction",
+        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        "half_space = { point = [0.0, 0.2], normal = [0, 0] }",
+    ),
+    (
+        "two bodies of one name",
+        "[[bodies]]\nname = \"column\"\n",
+        "[[bodies]]\nname = \"column\"\nmaterial = \"jelly\"\nshape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[bodies]]\nname = \"column\"\n",
+    ),
+    (
+        "numbers beyond all bounds",
+        "max = [2.0, 1.0]",
+        "max = [2.0e300, 1.0e300]",
+    ),
+    ("a body at infinity", "max = [0.5, 0.5]", "max = [inf, 0.5]"),
+    (
+        "a number that is too large for one",
+        "dx = 0.05",
+        "dx = 1e999",
+    ),
+    (
+        "a whole number that is too large",
+        "dx = 0.05",
+        "dx = 0.05\nseed = 99999999999999999999",
+    ),
+    ("a date", "dx = 0.05", "dx = 0.05\nduration = 2024-01-01"),
+    (
+        "a negative duration",
+        "dx = 0.05",
+        "dx = 0.05\nduration = -1",
+    ),
+    (
+        "a body that is a number",
+        "[[bodies]]\nname = \"column\"\nmaterial = \"water\"\nshape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n",
+        "",
+    ),
     (
         "two shapes",
         "} }\n",
@@ -327,6 +453,28 @@ const BROKEN: &[(&str, &str, &str)] = &[
     ),
 ];
 
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float volume\nend_header\n0.1 0.1 0.01\n0.3 0.1 0.01\n";
+
+const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+/// An .npz file with one array, whatever its header says.
+fn npz(descr: &str, shape: &str, numbers: &[u8]) -> Vec<u8> {
+    let mut header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}");
+    while (10 + header.len() + 1) % 64 != 0 {
+        header.push(' ');
+    }
+    header.push('\n');
+    let mut npy = b"\x93NUMPY\x01\x00".to_vec();
+    npy.extend((header.len() as u16).to_le_bytes());
+    npy.extend(header.as_bytes());
+    npy.extend(numbers);
+    let mut writer = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    let options = zip::write::SimpleFileOptions::default();
+    writer.start_file("position.npy", options).unwrap();
+    std::io::Write::write_all(&mut writer, &npy).unwrap();
+    writer.finish().unwrap().into_inner()
+}
+
 fn failure(text: &str, overrides: &[(&str, &str)]) -> SceneError {
     let overrides: Vec<(String, String)> = overrides
         .iter()
@@ -397,6 +545,17 @@ fn broken_files() {
                 .as_bytes(),
         )
     };
+    let with_list = |name: &str| {
+        let shape = "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }";
+        let text = GOOD.replace(shape, &format!("particles = \"{name}\""));
+        write("scene.toml", text.as_bytes())
+    };
+    let with_mesh = |name: &str| {
+        let text = format!(
+            "dimension = 3\ndx = 0.1\n[materials.jelly]\npreset = \"jelly\"\n[[bodies]]\nmaterial = \"jelly\"\nshape = {{ mesh = \"{name}\" }}\n"
+        );
+        write("scene.toml", text.as_bytes())
+    };
     let junk: Vec<u8> = (0..600_u32).map(|i| (i * 37 % 251) as u8).collect();
     let cases: &[(&str, &dyn Fn() -> String)] = &[
         ("an empty file", &|| write("empty.toml", b"")),
@@ -441,6 +600,87 @@ fn broken_files() {
         }),
         ("a list of junk", &|| list("junk.csv", &junk)),
         ("an npz of junk", &|| list("junk.npz", &junk)),
+        ("an npz of words", &|| {
+            list("words.npz", &npz("<U4", "(2, 2)", &[0; 64]))
+        }),
+        ("an npz of another shape", &|| {
+            list("shape.npz", &npz("<f8", "(4,)", &[0; 32]))
+        }),
+        ("an npz that is shorter than it says", &|| {
+            list("short.npz", &npz("<f8", "(1000000000, 2)", &[0; 32]))
+        }),
+        ("a ply of 3D junk", &|| list("junk.ply", &junk)),
+        ("a ply that promises too much", &|| {
+            list(
+                "lie.ply",
+                PLY.replace("vertex 2", "vertex 1000000000000").as_bytes(),
+            )
+        }),
+        ("a ply with a word", &|| {
+            list("word.ply", PLY.replace("0.3 0.1", "0.3 much").as_bytes())
+        }),
+        ("a ply of nothing", &|| {
+            list(
+                "nothing.ply",
+                PLY.replace("vertex 2", "vertex 0").as_bytes(),
+            )
+        }),
+        ("a ply without y", &|| {
+            list("flat.ply", PLY.replace("float y", "float w").as_bytes())
+        }),
+        ("a list with a mark of byte order, cut", &|| {
+            list("mark.csv", "\u{feff}x,y,volume\n0.1,0.2\n".as_bytes())
+        }),
+        ("a list in bytes of another alphabet", &|| {
+            list("latin.csv", b"x,y,volume\n0.1,0.2,0.01 # gr\xfc\xdfe\n")
+        }),
+        ("a list with decimal commas", &|| {
+            list("comma.csv", b"x;y;volume\n0,1;0,2;0,01\n")
+        }),
+        ("a scene in bytes of another alphabet", &|| {
+            write("latin.toml", b"title = \"gr\xfc\xdfe\"\ndx = 0.1\n")
+        }),
+        ("a scene in two bytes a letter", &|| {
+            write("wide.toml", b"\xff\xfed\0x\0 \0=\0 \01\0")
+        }),
+        ("a scene cut short", &|| {
+            write("half.toml", GOOD[..GOOD.len() / 2].as_bytes())
+        }),
+        ("a list that is a folder", &|| {
+            std::fs::create_dir(folder.path().join("folder.csv")).unwrap();
+            with_list("folder.csv")
+        }),
+        ("a mesh that is not there", &|| with_mesh("none.stl")),
+        ("a mesh of another kind", &|| {
+            write("mesh.fbx", b"x");
+            with_mesh("mesh.fbx")
+        }),
+        ("an empty mesh", &|| {
+            write("empty.obj", b"");
+            with_mesh("empty.obj")
+        }),
+        ("an open mesh", &|| {
+            write("open.obj", OBJ.replace("f 1 3 2\n", "").as_bytes());
+            with_mesh("open.obj")
+        }),
+        ("a mesh with nan", &|| {
+            write("nan.obj", OBJ.replace("v 0 1 0", "v 0 nan 0").as_bytes());
+            with_mesh("nan.obj")
+        }),
+        ("a mesh with a corner that is not there", &|| {
+            write("corner.obj", OBJ.replace("f 1 3 2", "f 1 3 20").as_bytes());
+            with_mesh("corner.obj")
+        }),
+        ("a mesh cut short", &|| {
+            let mut bytes = vec![0; 84 + 50];
+            bytes[80] = 9;
+            write("cut.stl", &bytes);
+            with_mesh("cut.stl")
+        }),
+        ("a mesh without thickness", &|| {
+            write("flat.obj", OBJ.replace("v 0 0 1", "v 1 1 0").as_bytes());
+            with_mesh("flat.obj")
+        }),
         ("an npz that is not there", &|| {
             write(
                 "scene.toml",
@@ -463,6 +703,46 @@ fn broken_files() {
         writeln!(all, "# {what}\n{error}\n").unwrap();
     }
     insta::assert_snapshot!(all);
+}
+
+/// Devices and pipes never end, or never begin: they are refused without being read.
+#[cfg(unix)]
+#[test]
+fn only_plain_files_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.csv");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status();
+    assert!(made.is_ok_and(|status| status.success()));
+    let pipe = pipe.display().to_string();
+    for path in ["/dev/zero", &pipe] {
+        let error = Scene::load(path, &[]).unwrap_err();
+        assert!(error.message.contains("a device or a pipe"), "{error}");
+    }
+    let shape = "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }";
+    let zero = folder.path().join("zero.npz");
+    std::os::unix::fs::symlink("/dev/zero", &zero).unwrap();
+    for path in [&*pipe, &zero.display().to_string()] {
+        let text = GOOD.replace(shape, &format!("particles = \"{path}\""));
+        let error = failure(&text, &[]);
+        assert!(error.message.contains("a device or a pipe"), "{error}");
+        assert!(error.line > 0, "{error}");
+    }
+}
+
+#[test]
+fn line_ends_and_marks_of_other_systems_are_no_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("column.toml");
+    for text in [GOOD.replace('\n', "\r\n"), format!("\u{feff}{GOOD}")] {
+        std::fs::write(&path, text).unwrap();
+        Scene::load(&path.display().to_string(), &[]).unwrap_or_else(|error| panic!("{error}"));
+    }
+    std::fs::write(&path, GOOD.replace('\n', "\r\n").replace("dx =", "dy =")).unwrap();
+    let error = Scene::load(&path.display().to_string(), &[]).unwrap_err();
+    assert_eq!(
+        (error.line, error.column, &*error.text),
+        (2, 1, "dy = 0.05")
+    );
 }
 
 #[test]

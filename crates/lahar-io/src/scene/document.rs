@@ -447,7 +447,10 @@ fn syntax(sources: &Sources, source: usize, offset: usize, error: &toml::de::Err
         message: if is_cut {
             "there is no value after \"=\"".to_owned()
         } else {
-            format!("not TOML: {message}")
+            match message.contains("recurse") {
+                true => "tables and lists are nested too deep here".to_owned(),
+                false => format!("not TOML: {message}"),
+            }
         },
         ..error
     }

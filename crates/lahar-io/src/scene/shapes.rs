@@ -70,6 +70,12 @@ pub(super) fn read_shape_source<const D: usize>(
     let region = Region::new(shape, clip);
     if !(region.volume() > 0.0) {
         let bounds = region.shape().bounds();
+        let apart = (0..D).any(|i| bounds.max[i] < clip.min[i] || bounds.min[i] > clip.max[i]);
+        if !apart && !matches!(region.shape(), Shape::HalfSpace { .. }) {
+            return Err(body
+                .error_at("shape", format!("body \"{name}\" has no volume"))
+                .hint("nothing is left of its shape, or it is flat"));
+        }
         let error = body.error_at("shape", format!("body \"{name}\" lies outside the domain"));
         return Err(match region.shape() {
             Shape::HalfSpace { .. } => {
