@@ -17,6 +17,8 @@
 //! the update velocity stands where momentum was. Schemes that need the velocity before forces have
 //! a second plane of quads.
 
+mod columns;
+
 use crate::boundary::walls::Walls;
 use crate::dispatch::on_level;
 use crate::forces::{self, Force};
@@ -24,6 +26,7 @@ use crate::material::IsaToken;
 use crate::math::{Lanes, Vector};
 use crate::parallel;
 use crate::store::{Group, block_edge};
+use columns::Columns;
 
 /// Numbers a node and plane.
 pub(crate) const QUAD: usize = 4;
@@ -81,6 +84,7 @@ pub(crate) struct Grid<T, const D: usize> {
     /// Indices into `links` by tile.
     links_by_tile: Vec<u32>,
     links_of_tile: Vec<u32>,
+    columns: Columns<D>,
     tiles: Vec<T>,
     nodes: Vec<T>,
     /// Δt a of forces that differ from node to node, D numbers a node; empty if there are none.
@@ -99,6 +103,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             links_of_block: vec![0],
             links_by_tile: Vec::new(),
             links_of_tile: vec![0],
+            columns: Columns::default(),
             tiles: Vec::new(),
             nodes: Vec::new(),
             impulses: Vec::new(),
@@ -159,6 +164,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             }
         }
         self.link(walls);
+        self.columns.find(&self.blocks, walls);
         // Stale numbers are never read: a tile's first scatter clears it, a block's update writes it.
         self.tiles
             .resize(self.tile_blocks.len() * self.tile_len(), T::default());
@@ -299,6 +305,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
                 }
             });
         });
+        self.columns.fold(&mut nodes, self.planes, walls);
         self.nodes = nodes;
     }
 

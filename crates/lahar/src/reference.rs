@@ -14,6 +14,7 @@
 //! bring, because FLIP and the staggered energy ask for a node's velocity before forces.
 //! Lever arms are r = x_i − x_p.
 
+use crate::boundary::contact::{Column, ColumnNode};
 use crate::boundary::walls::Walls;
 use crate::error::SetupError;
 use crate::forces;
@@ -223,7 +224,7 @@ impl<const D: usize> Reference<D> {
     pub fn update_grid(&self, grid: &Grid<Momentum<D>, D>, dt: f64) -> Grid<Velocity<D>, D> {
         let gravity = Vector(self.setup.gravity);
         let with_mass = grid.iter().filter(|(_, n)| n.mass > 0.0);
-        with_mass
+        let mut grid = with_mass
             .map(|(&node, n)| {
                 let before = over(n.momentum, n.mass);
                 let x = core::array::from_fn(|axis| {
@@ -244,7 +245,55 @@ impl<const D: usize> Reference<D> {
                 };
                 (node, velocity)
             })
-            .collect()
+            .collect();
+        self.fold_walls(&mut grid);
+        grid
+    }
+
+    /// Lets the walls on their planes act on velocities.
+    fn fold_walls(&self, grid: &mut Grid<Velocity<D>, D>) {
+        for wall in &self.walls.planes {
+            let on_plane = grid.keys().filter(|node| node[wall.axis] == wall.node);
+            for node in on_plane.copied().collect::<Vec<_>>() {
+                let inward = i64::from(wall.inward);
+                let places = [-inward, 0, inward].map(|step| {
+                    let mut place = node;
+                    place[wall.axis] += step;
+                    place
+                });
+                let nothing = Velocity {
+                    mass: 0.0,
+                    before: Vector([0.0; D]),
+                    after: Vector([0.0; D]),
+                };
+                let [beyond, plane, inside] = places.map(|place| {
+                    let node = grid.get(&place).unwrap_or(&nothing);
+                    ColumnNode {
+                        mass: node.mass,
+                        velocity: node.after,
+                        before: node.before,
+                    }
+                });
+                let mut column = Column {
+                    beyond,
+                    plane,
+                    inside,
+                };
+                let inward = f64::from(wall.inward);
+                if !wall.contact.fold(&mut column, wall.axis, inward) {
+                    continue;
+                }
+                let folded = [column.beyond, column.plane, column.inside];
+                for (place, node) in places.into_iter().zip(folded) {
+                    let velocity = Velocity {
+                        mass: node.mass,
+                        before: node.before,
+                        after: node.velocity,
+                    };
+                    grid.insert(place, velocity);
+                }
+            }
+        }
     }
 
     /// G2P for a substep of `dt` \[s\].

@@ -1,6 +1,6 @@
 //! What stops the material: contact laws × shapes, as plain data.
 
-mod contact;
+pub(crate) mod contact;
 mod pointer;
 pub(crate) mod walls;
 
@@ -53,7 +53,8 @@ pub enum Contact {
 /// Where a wall takes hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WallStyle {
-    /// On the plane of the domain's side.
+    /// On the plane of the domain's side: nodes beyond it hold the mirror image of the material
+    /// inside, wherever the wall pushes.
     #[default]
     Plane,
     /// As in the Taichi examples: at all nodes with an index below `padding`, or above the last

@@ -15,9 +15,23 @@ struct End {
     contact: Contact,
 }
 
+/// A wall on its plane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plane {
+    pub(crate) axis: usize,
+    /// The index on `axis` of the nodes on the plane.
+    pub(crate) node: i64,
+    /// +1: the domain is on the side of higher indices; −1: of lower ones.
+    pub(crate) inward: i8,
+    pub(crate) contact: Contact,
+}
+
 /// The walls of a domain in node indices; nothing at all when unbounded.
 #[derive(Clone, Debug)]
 pub(crate) struct Walls<const D: usize> {
+    /// Walls on their plane, axis after axis. They act in this order.
+    pub(crate) planes: Vec<Plane>,
+    /// Walls of [`WallStyle::Nodes`].
     low: [Option<End>; D],
     high: [Option<End>; D],
     /// Cells on a periodic axis.
@@ -32,6 +46,7 @@ pub(crate) struct Walls<const D: usize> {
 impl<const D: usize> Walls<D> {
     pub(crate) fn unbounded() -> Self {
         Self {
+            planes: Vec::new(),
             low: [None; D],
             high: [None; D],
             period: [None; D],
@@ -81,21 +96,35 @@ impl<const D: usize> Walls<D> {
                     let on_plane = domain.style == WallStyle::Plane;
                     if low == Contact::Open {
                         walls.open[axis].0 = Some(0.0);
+                    } else if on_plane {
+                        walls.planes.push(Plane {
+                            axis,
+                            node: low_node,
+                            inward: 1,
+                            contact: low,
+                        });
+                        walls.hold[axis].0 = Some(0.0);
                     } else {
                         walls.low[axis] = Some(End {
                             node: low_node,
                             contact: low,
                         });
-                        walls.hold[axis].0 = on_plane.then_some(0.0);
                     }
                     if high == Contact::Open {
                         walls.open[axis].1 = Some(cells as f64);
+                    } else if on_plane {
+                        walls.planes.push(Plane {
+                            axis,
+                            node: high_node,
+                            inward: -1,
+                            contact: high,
+                        });
+                        walls.hold[axis].1 = Some(cells as f64);
                     } else {
                         walls.high[axis] = Some(End {
                             node: high_node,
                             contact: high,
                         });
-                        walls.hold[axis].1 = on_plane.then_some(cells as f64);
                     }
                 }
             }
@@ -103,7 +132,8 @@ impl<const D: usize> Walls<D> {
         Ok(walls)
     }
 
-    /// Whether any node of `first .. first + edge` on each axis touches a wall.
+    /// Whether any node of `first .. first + edge` on each axis is in a wall of
+    /// [`WallStyle::Nodes`].
     pub(crate) fn touch(&self, first: [i64; D], edge: usize) -> bool {
         (0..D).any(|axis| {
             self.low[axis].is_some_and(|end| first[axis] <= end.node)
@@ -111,7 +141,8 @@ impl<const D: usize> Walls<D> {
         })
     }
 
-    /// The velocity of node `node` after the walls have acted on it, axis after axis.
+    /// The velocity of node `node` after the walls of [`WallStyle::Nodes`] have acted on it, axis
+    /// after axis.
     #[inline(always)]
     pub(crate) fn constrain<T: Scalar>(
         &self,

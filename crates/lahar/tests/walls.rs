@@ -1,0 +1,301 @@
+//! Walls on their planes: waves see them where they are drawn, a body at rest stays, and what leaves
+//! a `separate` wall leaves as if there were none.
+
+use lahar::material::{Corotated, Eos, Fluid, JacobianUpdate, lame};
+use lahar::particles::Field;
+use lahar::{
+    Contact, Deformation, Domain, Instance, Material, Model, ParticleBatch, Setup, Sides, Simulate,
+    Simulation, TimeStep, Transfer, WallStyle,
+};
+use std::f64::consts::PI;
+
+const DENSITY: f64 = 1000.0; // kg/m³
+
+const SLIP: Contact = Contact::Slip { friction: 0.0 };
+const SEPARATE: Contact = Contact::Separate { friction: 0.0 };
+
+fn both(contact: Contact) -> Sides {
+    Sides::Walls {
+        low: contact,
+        high: contact,
+    }
+}
+
+/// Fluid with p = ρ₀c² (1/J − 1).
+fn fluid(sound_speed: f64, tension: f64) -> Material {
+    Material {
+        name: "fluid".into(),
+        density: DENSITY,
+        model: Model::Fluid(Fluid {
+            eos: Eos::Tait { gamma: 1.0 },
+            bulk_modulus: DENSITY * sound_speed * sound_speed,
+            viscosity: 0.0,
+            bulk_viscosity: 0.0,
+            tension,
+            jacobian_update: JacobianUpdate::Trace,
+        }),
+    }
+}
+
+/// Two particles a cell and axis on a lattice that fills `min .. max` (whole half cells).
+fn lattice<const D: usize>(min: [f64; D], max: [f64; D], dx: f64) -> ParticleBatch<D> {
+    let counts: [usize; D] =
+        core::array::from_fn(|axis| ((max[axis] - min[axis]) / dx * 2.0).round() as usize);
+    let place = |mut number: usize| {
+        core::array::from_fn(|axis| {
+            let k = number % counts[axis];
+            number /= counts[axis];
+            min[axis] + (k as f64 + 0.5) * dx / 2.0
+        })
+    };
+    ParticleBatch {
+        position: (0..counts.iter().product()).map(place).collect(),
+        volume: vec![(dx / 2.0).powi(D as i32)],
+        ..ParticleBatch::default()
+    }
+}
+
+fn field<const D: usize>(simulation: &impl Simulate, field: Field) -> Vec<[f64; D]> {
+    let snapshot = simulation.snapshot(&[field]);
+    let numbers = snapshot.columns[0].1.to_f64();
+    numbers.as_chunks().0.to_vec()
+}
+
+/// The first acoustic mode between two walls `cells` apart: its period over 2L/c, less 1, and what
+/// is left of the amplitude eight and a half periods after the first quarter.
+fn acoustic_mode<T: Instance<D>, const D: usize>(
+    transfer: Transfer,
+    cells: usize,
+    low: Contact,
+    high: Contact,
+) -> (f64, f64) {
+    let (length, sound_speed, speed) = (1.0, 10.0, 0.01);
+    let dx = length / cells as f64;
+    let dt = 0.2 * dx / sound_speed;
+    let mut max = [4.0 * dx; D];
+    max[0] = length;
+    let mut sides = [Sides::Periodic; D];
+    sides[0] = Sides::Walls { low, high };
+    let setup = Setup {
+        transfer,
+        time_step: TimeStep::Fixed(dt),
+        domain: Some(Domain {
+            min: [0.0; D],
+            max,
+            sides,
+            style: WallStyle::Plane,
+        }),
+        ..Setup::new(dx, vec![fluid(sound_speed, f64::INFINITY)])
+    };
+    let mut batch = lattice([0.0; D], max, dx);
+    let mode: Vec<f64> = batch
+        .position
+        .iter()
+        .map(|x| (PI * x[0] / length).sin())
+        .collect();
+    for x in &batch.position {
+        let k = PI / length;
+        let mut v = [0.0; D];
+        v[0] = speed * (k * x[0]).sin();
+        batch.velocity.push(v);
+        let mut c = [[0.0; D]; D];
+        c[0][0] = speed * k * (k * x[0]).cos();
+        batch.affine.push(c);
+    }
+    let mut simulation = Simulation::<T, D>::new(setup, &[batch]).unwrap();
+    let period = 2.0 * length / sound_speed;
+    let (mut last, mut time, mut peak) = (1.0, 0.0, 0.0_f64);
+    let (mut zeros, mut peaks) = (vec![], vec![]);
+    while zeros.len() < 19 {
+        simulation.substep().unwrap();
+        time += dt;
+        let velocity = field::<D>(&simulation, Field::Velocity);
+        let products = velocity.iter().zip(&mode).map(|(v, mode)| v[0] * mode);
+        let now = products.sum::<f64>() * 2.0 / (mode.len() as f64 * speed);
+        if now * last < 0.0 {
+            zeros.push(time - dt * now / (now - last));
+            peaks.push(peak);
+            peak = 0.0;
+        }
+        peak = peak.max(now.abs());
+        last = now;
+        assert!(
+            time < 12.0 * period,
+            "no wave: {transfer:?} {low:?} {zeros:?} {peaks:?}"
+        );
+    }
+    (
+        (zeros[18] - zeros[0]) / 9.0 / period - 1.0,
+        peaks[18] / peaks[1],
+    )
+}
+
+/// F6 of the validation cases. Zeroed nodes at the wall, which this once was, give .93 %.
+#[test]
+fn f6_walls_are_where_waves_see_them() {
+    for (transfer, kept) in [
+        (Transfer::Apic, 0.995),
+        (Transfer::Flip { blend: 1.0 }, 0.999),
+    ] {
+        for (low, high) in [(SLIP, SLIP), (Contact::Sticky, SLIP)] {
+            let (period, amplitude) = acoustic_mode::<f64, 2>(transfer, 40, low, high);
+            assert!(period.abs() < 2e-3, "{transfer:?}: period off by {period}");
+            assert!(amplitude > kept, "{transfer:?}: {amplitude} is left");
+        }
+    }
+    let (period, amplitude) = acoustic_mode::<f32, 3>(Transfer::Apic, 40, SLIP, SLIP);
+    assert!(period.abs() < 2e-3, "3D f32: period off by {period}");
+    assert!(amplitude > 0.995, "3D f32: {amplitude} is left");
+}
+
+/// Second order: a quarter of the error at half the spacing.
+#[test]
+fn the_error_of_walls_is_of_second_order() {
+    let error = |cells| acoustic_mode::<f64, 2>(Transfer::Apic, cells, SLIP, SLIP).0;
+    let ratio = error(20) / error(40);
+    assert!((3.5..4.5).contains(&ratio), "{ratio}");
+}
+
+/// A block of jelly in a corner, pressed against both walls by no one, moves away from them.
+fn leave<T: Instance<D>, const D: usize>(transfer: Transfer, towards: f64, friction: f64) -> f64 {
+    let dx = 0.05;
+    let (lambda, mu) = lame(1e4, 0.3);
+    let material = Material {
+        name: "jelly".into(),
+        density: DENSITY,
+        model: Model::Corotated(Corotated { lambda, mu }),
+    };
+    let setup = Setup {
+        transfer,
+        time_step: TimeStep::Fixed(1e-3),
+        domain: Some(Domain {
+            min: [0.0; D],
+            max: [1.0; D],
+            sides: [both(Contact::Separate { friction }); D],
+            style: WallStyle::Plane,
+        }),
+        ..Setup::new(dx, vec![material])
+    };
+    let (min, max) = if towards > 0.0 {
+        (0.0, 0.3)
+    } else {
+        (0.7, 1.0)
+    };
+    let mut batch = lattice([min; D], [max; D], dx);
+    let mut velocity = [0.5 * towards; D];
+    velocity[1] = 0.2 * towards;
+    batch.velocity = vec![velocity];
+    let mut simulation = Simulation::<T, D>::new(setup, &[batch]).unwrap();
+    for _ in 0..200 {
+        simulation.substep().unwrap();
+    }
+    let velocities = field::<D>(&simulation, Field::Velocity);
+    let mut worst = 0.0_f64;
+    for v in velocities {
+        for axis in 0..D {
+            worst = worst.max((v[axis] - velocity[axis]).abs());
+        }
+    }
+    worst
+}
+
+/// A mirror image would hold it back: the wall lets go of what leaves.
+#[test]
+fn a_body_that_leaves_a_separate_wall_keeps_its_velocity() {
+    for transfer in [Transfer::Pic, Transfer::Flip { blend: 1.0 }, Transfer::Apic] {
+        for towards in [1.0, -1.0] {
+            for friction in [0.0, 0.5] {
+                let change = leave::<f64, 2>(transfer, towards, friction);
+                assert!(change < 1e-12, "{transfer:?} {towards}: {change:e}");
+                let change = leave::<f64, 3>(transfer, towards, friction);
+                assert!(change < 1e-12, "3D {transfer:?} {towards}: {change:e}");
+            }
+        }
+    }
+}
+
+/// A tank at rest, filled wall to wall, with the pressure of its depth.
+fn tank<T: Instance<D>, const D: usize>(walls: Contact) -> (f64, f64) {
+    let (dx, depth, g, sound_speed) = (0.05, 0.5, 9.81, 20.0);
+    let mut gravity = [0.0; D];
+    gravity[D - 1] = -g;
+    let setup = Setup {
+        gravity,
+        domain: Some(Domain {
+            min: [0.0; D],
+            max: [1.0; D],
+            sides: [both(walls); D],
+            style: WallStyle::Plane,
+        }),
+        ..Setup::new(dx, vec![fluid(sound_speed, 0.0)])
+    };
+    let mut filled = [1.0; D];
+    filled[D - 1] = depth;
+    let mut batch = lattice([0.0; D], filled, dx);
+    // p = ρ₀c² (e^{g(H−y)/c²} − 1)
+    let jacobian = |x: &[f64; D]| (-g * (depth - x[D - 1]) / (sound_speed * sound_speed)).exp();
+    batch.deformation = Deformation::Jacobian(batch.position.iter().map(jacobian).collect());
+    let start = batch.position.clone();
+    let mut simulation = Simulation::<T, D>::new(setup, &[batch]).unwrap();
+    simulation.advance_to(0.5).unwrap();
+    let speed = field::<D>(&simulation, Field::Velocity)
+        .iter()
+        .map(|v| v.iter().map(|v| v * v).sum::<f64>().sqrt())
+        .fold(0.0, f64::max);
+    let moved = field::<D>(&simulation, Field::Position)
+        .iter()
+        .zip(&start)
+        .map(|(x, start)| (x[D - 1] - start[D - 1]).abs())
+        .fold(0.0, f64::max);
+    (speed / (g * depth).sqrt(), moved / depth)
+}
+
+#[test]
+fn a_tank_at_rest_stays_at_rest() {
+    for walls in [SLIP, SEPARATE, Contact::Sticky] {
+        let (speed, moved) = tank::<f32, 2>(walls);
+        assert!(speed < 1e-3, "2D {walls:?}: {speed:e} √(gH)");
+        assert!(
+            moved < 1e-3,
+            "2D {walls:?}: moved by {moved:e} of the depth"
+        );
+    }
+    let (speed, moved) = tank::<f32, 3>(SEPARATE);
+    assert!(speed < 1e-3, "3D: {speed:e} √(gH)");
+    assert!(moved < 1e-3, "3D: moved by {moved:e} of the depth");
+}
+
+/// What friction may take: μ times the weight of a block of jelly that slides on the floor.
+#[test]
+fn a_block_slides_on_by_coulomb_s_law() {
+    let (dx, g, friction, speed) = (0.025, 10.0, 0.3, 2.0);
+    let (lambda, mu) = lame(1e6, 0.3);
+    let material = Material {
+        name: "block".into(),
+        density: DENSITY,
+        model: Model::Corotated(Corotated { lambda, mu }),
+    };
+    let setup = Setup {
+        gravity: [0.0, -g],
+        domain: Some(Domain {
+            min: [0.0; 2],
+            max: [4.0, 0.5],
+            sides: [both(Contact::Separate { friction }); 2],
+            style: WallStyle::Plane,
+        }),
+        ..Setup::new(dx, vec![material])
+    };
+    let mut batch = lattice([0.5, 0.0], [1.0, 0.1], dx);
+    batch.velocity = vec![[speed, 0.0]];
+    let mut simulation = Simulation::<f64, 2>::new(setup, &[batch]).unwrap();
+    let mean = |simulation: &Simulation<f64, 2>| {
+        let v = field::<2>(simulation, Field::Velocity);
+        v.iter().map(|v| v[0]).sum::<f64>() / v.len() as f64
+    };
+    let time = 0.4;
+    simulation.advance_to(time).unwrap();
+    let slowed = (speed - mean(&simulation)) / (friction * g * time);
+    assert!((slowed - 1.0).abs() < 0.01, "{slowed} of μ g t");
+    simulation.advance_to(1.0).unwrap();
+    assert!(mean(&simulation).abs() < 0.01, "{}", mean(&simulation));
+}
