@@ -5,14 +5,18 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use eframe::egui::{self, Color32};
-use lahar::{Command, Field, Pointer, PointerAction, Snapshot};
+use lahar::Command;
+use lahar_io::scene::{Comparison, Controls};
 
-use crate::camera::{Camera, V3, add, against, corners, length, scale, sub};
+use crate::camera::{Camera, V3, length, scale};
 use crate::colour::{self, ColourBy, Range};
+use crate::compare::Draft;
 use crate::controls::{Action, Direction};
-use crate::renderer::{Line, Picture, Sprite, View};
-use crate::scenes::{Changes, SceneCard, Setting};
-use crate::solver::{Condition, Facts, Order, Readouts, Shown};
+use crate::hand::{Grip, Hand};
+use crate::renderer::{Picture, Sprite, View};
+use crate::scenery::{Scenery, sprites, usual_radius};
+use crate::scenes::{Changes, Facts, SceneCard, Setting};
+use crate::solver::{Condition, Order, Readouts, Shown, Side, Wanted};
 
 /// What the window must do for the state.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,36 +29,6 @@ pub enum Effect {
     Thumbnails,
     /// Close the window.
     Close,
-}
-
-/// The hand in the scene, in reach and strength.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hand {
-    /// Reach, in parts of the scene's smallest extent.
-    pub reach: f64,
-    /// Acceleration, in parts of the scene's gravity.
-    pub strength: f64,
-}
-
-impl Default for Hand {
-    fn default() -> Self {
-        // mpm128 pulls with 100 where gravity is 30.
-        Self {
-            reach: 0.25,
-            strength: 100.0 / 30.0,
-        }
-    }
-}
-
-/// What a pressed button means in the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Grip {
-    /// Towards the hand.
-    Attract,
-    /// Away from it.
-    Repel,
-    /// Along with it.
-    Drag,
 }
 
 /// All of it.
@@ -77,9 +51,11 @@ pub struct AppState {
     pub colour_by: ColourBy,
     /// Colours of the scene's swatches, by index.
     pub palette: Vec<Color32>,
+    /// The colour behind everything.
+    pub background: Color32,
     /// Low and high end of the legend.
     pub range: Range,
-    /// Radius of a particle, in parts of its spacing.
+    /// Radius of a particle, in parts of its spacing, or of the scene's own radius.
     pub radius: f32,
     /// The hand.
     pub hand: Hand,
@@ -97,48 +73,61 @@ pub struct AppState {
     pub camera: Option<Camera>,
     /// A word on what happened, and when it is to go \[s of egui's clock\].
     pub notice: Option<(String, f64)>,
-    /// Width over height of where the scene is drawn.
+    /// Width over height of where a side is drawn.
     pub aspect: f64,
+    /// What would be compared.
+    pub draft: Draft,
+    /// Whether the view was turned, moved or zoomed; if not, it follows the window's size.
+    pub view_is_own: bool,
+    pub(crate) scenery: Scenery,
+    /// Particles to draw, by side.
+    pub(crate) sprites: Vec<Arc<Vec<Sprite>>>,
+    /// The direction that gravity has while its key is held, in scenes that want it so.
+    pub(crate) held_gravity: Option<Direction>,
 
     changes: Changes,
+    comparison: Option<Comparison>,
     shown: Shown,
     effects: Vec<Effect>,
-    sprites: Arc<Vec<Sprite>>,
-    lines: Arc<Vec<Line>>,
-    origin: V3,
-    extent: (V3, V3),
     recolour: bool,
     refit: bool,
     asked_for_thumbnails: bool,
 }
 
-/// Radius in parts of the spacing: discs that leave no holes between jittered particles.
-const RADIUS_2D: f32 = 0.95;
-/// Balls need less: those behind fill the gaps.
-const RADIUS_3D: f32 = 0.65;
 /// Speeds that + and − step through.
-const SPEEDS: [f64; 13] = [
-    0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.0, 4.0, 8.0,
+pub(crate) const SPEEDS: [f64; 16] = [
+    0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.0, 4.0, 8.0,
 ];
 /// Gravity of a scene that has none, when keys ask for some \[m/s²\].
 const EARTH: f64 = 9.81;
+/// Frames of a recording that the arrows up and down pass over.
+const FAR: isize = 10;
+/// What a key turns or moves the view by, in parts of the window's height.
+const STEP: f64 = 0.05;
+/// What a key enlarges by.
+const ZOOM: f64 = 1.15;
 
 impl AppState {
-    /// Opens `scene` (by name or path), or the default one.
-    pub fn new(scenes: Vec<SceneCard>, default_scene: &str, scene: Option<&str>) -> Self {
+    /// Opens a scene, `wanted` or the default one.
+    pub fn new(scenes: Vec<SceneCard>, default_scene: &str, wanted: Option<Wanted>) -> Self {
+        let wanted = wanted.unwrap_or_else(|| Wanted {
+            scene: default_scene.to_owned(),
+            ..Wanted::default()
+        });
         let mut state = Self {
             scenes,
             default_scene: default_scene.to_owned(),
-            scene: String::new(),
+            scene: wanted.scene,
             settings: vec![],
             paused: false,
             speed: 1.0,
             gravity: [0.0; 3],
             colour_by: ColourBy::default(),
             palette: vec![],
+            background: colour::BACKGROUND,
             range: Range::default(),
-            radius: RADIUS_2D,
-            hand: Hand::default(),
+            radius: 1.0,
+            hand: Hand::of(Controls::default(), EARTH, 1.0),
             held: None,
             show_scenes: false,
             thumbnails: HashMap::new(),
@@ -147,18 +136,20 @@ impl AppState {
             camera: None,
             notice: None,
             aspect: 1.5,
-            changes: vec![],
+            draft: Draft::default(),
+            view_is_own: false,
+            scenery: Scenery::default(),
+            sprites: vec![],
+            held_gravity: None,
+            changes: wanted.changes,
+            comparison: wanted.comparison,
             shown: Shown::default(),
             effects: vec![],
-            sprites: Arc::default(),
-            lines: Arc::default(),
-            origin: [0.0; 3],
-            extent: ([0.0; 3], [1.0; 3]),
             recolour: false,
             refit: true,
             asked_for_thumbnails: false,
         };
-        state.open(scene.unwrap_or(default_scene).to_owned());
+        state.reopen();
         state
     }
 
@@ -177,9 +168,24 @@ impl AppState {
         self.shown.facts.as_deref()
     }
 
-    /// Numbers for the panel.
-    pub fn readouts(&self) -> &Readouts {
-        &self.shown.readouts
+    /// What runs side by side: one as a rule; none before the first scene is built.
+    pub fn sides(&self) -> &[Side] {
+        &self.shown.sides
+    }
+
+    /// Numbers of the first side.
+    pub fn readouts(&self) -> Readouts {
+        (self.shown.sides.first()).map_or_else(Readouts::default, |side| side.readouts)
+    }
+
+    /// Frames of the recording that is replayed; `None`: the scene is simulated.
+    pub fn recorded_frames(&self) -> Option<usize> {
+        self.facts().and_then(|facts| facts.frames)
+    }
+
+    /// What is compared.
+    pub fn comparison(&self) -> Option<&Comparison> {
+        self.comparison.as_ref()
     }
 
     /// Why the solver stopped, if it did.
@@ -201,7 +207,7 @@ impl AppState {
     /// Does what a key or a button asks for.
     pub fn act(&mut self, action: Action) {
         match action {
-            Action::Restart => self.order(Order::Restart),
+            Action::Restart => self.restart(),
             Action::DefaultScene => self.open(self.default_scene.clone()),
             Action::Scene(index) => {
                 if let Some(card) = self.scenes.get(index) {
@@ -214,12 +220,33 @@ impl AppState {
                     self.effects.push(Effect::Thumbnails);
                 }
             }
+            Action::Gravity(direction) if self.recorded_frames().is_some() => {
+                self.seek_by(match direction {
+                    Direction::Left => -1,
+                    Direction::Right => 1,
+                    Direction::Up => FAR,
+                    Direction::Down => -FAR,
+                });
+            }
             Action::Gravity(direction) => {
                 let pull = self.scene_gravity();
                 let axis = self.axis(direction);
                 self.set_gravity(scale(axis, pull));
             }
+            Action::Pause if self.shown.condition == Condition::Ended => {
+                self.set_paused(false);
+                self.restart();
+            }
             Action::Pause => self.set_paused(!self.paused),
+            Action::Back => self.seek_by(-1),
+            Action::Compare => match self.comparison {
+                Some(_) => self.compare(None),
+                None => self.compare_draft(),
+            },
+            Action::Turn(direction) => self.turn(direction),
+            Action::Move(direction) => self.pan(direction),
+            Action::Nearer => self.zoom(ZOOM),
+            Action::Farther => self.zoom(1.0 / ZOOM),
             Action::Substep => {
                 self.set_paused(true);
                 self.order(Order::Substep);
@@ -247,13 +274,42 @@ impl AppState {
         }
     }
 
-    /// Opens a scene by name or path.
+    /// Opens a scene by name or path, alone and as it is.
     pub fn open(&mut self, name: String) {
-        self.scene.clone_from(&name);
+        self.scene = name;
         self.show_scenes = false;
         self.refit = true;
         self.changes.clear();
-        self.order(Order::Open(name, vec![]));
+        self.comparison = None;
+        self.reopen();
+    }
+
+    fn reopen(&mut self) {
+        self.order(Order::Open(Wanted {
+            scene: self.scene.clone(),
+            changes: self.changes.clone(),
+            comparison: self.comparison.clone(),
+        }));
+    }
+
+    fn restart(&mut self) {
+        self.order(Order::Restart);
+    }
+
+    /// Runs the scene with several values of a key side by side, or alone again.
+    pub fn compare(&mut self, comparison: Option<Comparison>) {
+        self.comparison = comparison;
+        // They would lie over one of the sides.
+        self.show_hints &= self.comparison.is_none();
+        self.refit = true;
+        self.reopen();
+    }
+
+    /// Compares what the panel has.
+    pub fn compare_draft(&mut self) {
+        if let Some(comparison) = self.draft.comparison() {
+            self.compare(Some(comparison));
+        }
     }
 
     /// Opens the scene anew with the settings of the panel.
@@ -270,13 +326,13 @@ impl AppState {
         self.changes
             .retain(|(key, _)| !changed.iter().any(|(new, _)| new == key));
         self.changes.extend(changed);
-        self.order(Order::Open(self.scene.clone(), self.changes.clone()));
+        self.reopen();
     }
 
     /// Opens the scene as its file has it.
     pub fn forget_settings(&mut self) {
         self.changes.clear();
-        self.order(Order::Open(self.scene.clone(), vec![]));
+        self.reopen();
     }
 
     /// Whether the scene runs with changes.
@@ -319,8 +375,39 @@ impl AppState {
 
     /// The magnitude of gravity that keys turn \[m/s²\].
     pub fn scene_gravity(&self) -> f64 {
-        let own = self.facts().map_or(0.0, |facts| length(facts.gravity));
-        if own > 0.0 { own } else { EARTH }
+        let facts = self.facts();
+        let own = facts.map_or(0.0, |facts| length(facts.gravity));
+        let keys = facts.and_then(|facts| facts.controls.gravity);
+        keys.unwrap_or(if own > 0.0 { own } else { EARTH })
+    }
+
+    /// Whether gravity acts while a key is held, and none after.
+    pub fn holds_gravity(&self) -> bool {
+        self.facts().is_some_and(|facts| facts.controls.hold)
+    }
+
+    /// The direction whose key is held, where [`AppState::holds_gravity`].
+    pub fn hold_gravity(&mut self, held: Option<Direction>) {
+        if self.held_gravity != held {
+            self.held_gravity = held;
+            let gravity = held.map_or([0.0; 3], |direction| {
+                scale(self.axis(direction), self.scene_gravity())
+            });
+            self.set_gravity(gravity);
+        }
+    }
+
+    /// To a frame of the recording, which then stands.
+    pub fn seek(&mut self, frame: usize) {
+        self.set_paused(true);
+        self.order(Order::Seek(frame));
+    }
+
+    fn seek_by(&mut self, frames: isize) {
+        if let Some(count) = self.recorded_frames() {
+            let frame = self.readouts().frame.saturating_add_signed(frames);
+            self.seek(frame.min(count.saturating_sub(1)));
+        }
     }
 
     /// A direction of the window as an axis of the scene.
@@ -339,72 +426,6 @@ impl AppState {
         }
     }
 
-    /// The hand at `at` (−1..1 of the drawing) doing `grip`, moving with `velocity` \[1/s, of −1..1\].
-    pub fn hold(&mut self, at: [f64; 2], grip: Grip, velocity: [f64; 2]) {
-        let Some(camera) = &self.camera else { return };
-        let through = match self.held {
-            Some((position, _)) => position,
-            None => self.nearest(at).unwrap_or(camera.target),
-        };
-        let position = camera.unproject(at, self.aspect, through);
-        let pull = self.hand.strength * self.scene_gravity();
-        let action = match grip {
-            Grip::Attract => PointerAction::Attract(pull),
-            Grip::Repel => PointerAction::Attract(-pull),
-            Grip::Drag => {
-                let ahead = [at[0] + velocity[0], at[1] + velocity[1]];
-                let there = camera.unproject(ahead, self.aspect, through);
-                PointerAction::Drag(sub(there, position))
-            }
-        };
-        self.held = Some((position, grip));
-        let pointer = Pointer {
-            position,
-            radius: self.hand_radius(),
-            action,
-        };
-        self.order(Order::Tell(Command::Pointer(Some(pointer))));
-    }
-
-    /// The hand is lifted.
-    pub fn release(&mut self) {
-        if self.held.take().is_some() {
-            self.order(Order::Tell(Command::Pointer(None)));
-        }
-    }
-
-    /// How far the hand reaches \[m\].
-    pub fn hand_radius(&self) -> f64 {
-        let (min, max) = self.extent;
-        let dimension = self.facts().map_or(2, |facts| facts.dimension);
-        let size = sub(max, min);
-        let smallest = size[..dimension]
-            .iter()
-            .copied()
-            .fold(f64::INFINITY, f64::min);
-        self.hand.reach * smallest
-    }
-
-    /// The particle nearest to the eye under `at`, in 3D.
-    fn nearest(&self, at: [f64; 2]) -> Option<V3> {
-        const CLOSE: f64 = 0.04;
-        let camera = self
-            .camera
-            .as_ref()
-            .filter(|camera| camera.dimension == 3)?;
-        let back = camera.axes()[2];
-        let near = |sprite: &Sprite| {
-            let point = add(sprite.position.map(f64::from), self.origin);
-            let [x, y] = camera.project(point, self.aspect)?;
-            let off = f64::hypot((x - at[0]) * self.aspect, y - at[1]);
-            (off < CLOSE).then(|| (crate::camera::dot(back, point), point))
-        };
-        let found = self.sprites.iter().filter_map(near);
-        found
-            .max_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(_, point)| point)
-    }
-
     /// Takes in what the solver shows.
     pub fn receive(&mut self, shown: Shown) {
         let opened = shown.opened != self.shown.opened;
@@ -412,23 +433,15 @@ impl AppState {
         self.shown = shown;
         if opened && let Some(facts) = self.shown.facts.clone() {
             self.gravity = facts.gravity;
+            self.held_gravity = None;
             self.settings.clone_from(&facts.settings);
+            self.draft.offer(&facts.settings, self.comparison.as_ref());
             self.range.forget();
-            let another = scene_before.as_ref() != Some(&facts.card.name);
-            if another {
-                if self.colour_by != facts.angle.colour_by && scene_before.is_none() {
-                    self.set_colour_by(facts.angle.colour_by);
-                }
-                self.palette = colour::palette(&facts.swatches);
-                self.radius = if facts.dimension == 2 {
-                    RADIUS_2D
-                } else {
-                    RADIUS_3D
-                };
+            let snapshot = self.sides().first().map(|side| Arc::clone(&side.snapshot));
+            self.scenery = Scenery::new(&facts, snapshot.as_deref());
+            if scene_before.as_ref() != Some(&facts.card.name) {
+                self.look_anew(&facts, scene_before.is_none());
             }
-            self.extent = extent(&facts, self.shown.snapshot.as_deref());
-            self.origin = scale(add(self.extent.0, self.extent.1), 0.5);
-            self.lines = Arc::new(outline(&facts, self.extent, self.origin));
             if core::mem::take(&mut self.refit) {
                 self.fit();
             }
@@ -436,79 +449,114 @@ impl AppState {
         self.recolour = true;
     }
 
-    /// The whole scene in view.
-    fn fit(&mut self) {
-        let Some(facts) = self.facts() else { return };
-        self.camera = Some(Camera::fit(
-            facts.dimension,
-            self.extent,
-            facts.gravity,
-            facts.angle.direction,
-            self.aspect,
-        ));
+    /// Another scene: its own colours, its own hand.
+    fn look_anew(&mut self, facts: &Facts, first: bool) {
+        let by = facts.angle.colour_by;
+        // What was chosen stays, unless the scene asks for something.
+        if self.colour_by != by && (first || by != ColourBy::Material) {
+            self.set_colour_by(by);
+        }
+        self.palette = colour::palette(&facts.swatches);
+        self.background = (facts.angle.background)
+            .map_or(colour::BACKGROUND, |[r, g, b]| Color32::from_rgb(r, g, b));
+        self.radius = usual_radius(facts);
+        self.hand = Hand::of(
+            facts.controls,
+            self.scene_gravity(),
+            self.scenery.smallest(facts.dimension),
+        );
+        if self.speed != facts.controls.speed {
+            self.set_speed(facts.controls.speed);
+        }
     }
 
-    /// What is to be drawn on `pixels`.
-    pub fn picture(&mut self, pixels: [f32; 2]) -> Option<Picture> {
+    /// The view that the scene asks for, or the whole of it.
+    fn fit(&mut self) {
+        let Some(facts) = self.facts() else { return };
+        let camera = Camera::fit(
+            facts.dimension,
+            self.scenery.extent,
+            facts.gravity,
+            facts.angle,
+            self.aspect,
+        );
+        self.camera = Some(camera);
+        self.view_is_own = false;
+    }
+
+    /// The room for a side has this width over height.
+    pub fn set_aspect(&mut self, aspect: f64) {
+        if (self.aspect - aspect).abs() > 1e-6 {
+            self.aspect = aspect;
+            if !self.view_is_own {
+                self.fit();
+            }
+        }
+    }
+
+    fn turn(&mut self, direction: Direction) {
+        let [x, y] = direction.step();
+        match &mut self.camera {
+            Some(camera) if camera.dimension == 3 => {
+                camera.orbit(STEP * x, STEP * y);
+                self.view_is_own = true;
+            }
+            _ => self.pan(direction),
+        }
+    }
+
+    fn pan(&mut self, direction: Direction) {
+        let [x, y] = direction.step();
+        if let Some(camera) = &mut self.camera {
+            camera.pan(-STEP * x, -STEP * y);
+            self.view_is_own = true;
+        }
+    }
+
+    fn zoom(&mut self, factor: f64) {
+        let aspect = self.aspect;
+        if let Some(camera) = &mut self.camera {
+            camera.zoom(factor, [0.0; 2], aspect);
+            self.view_is_own = true;
+        }
+    }
+
+    /// What is to be drawn of a side, on so many pixels.
+    pub fn picture(&mut self, side: usize, pixels: [f32; 2]) -> Option<Picture> {
         if self.recolour {
             self.recolour = false;
             self.make_sprites();
         }
         let camera = self.camera.as_ref()?;
         Some(Picture {
-            sprites: Arc::clone(&self.sprites),
-            lines: Arc::clone(&self.lines),
+            slot: side,
+            sprites: Arc::clone(self.sprites.get(side)?),
+            lines: Arc::clone(&self.scenery.lines),
             view: View {
-                view: camera.view(self.origin),
+                view: camera.view(self.scenery.origin),
                 projection: camera.projection(self.aspect),
                 pixels,
                 radius: self.radius,
                 unused: 0.0,
             },
             solid: camera.dimension == 3,
-            background: self.background(),
+            background: self.background,
         })
     }
 
-    /// The colour behind everything.
-    pub fn background(&self) -> Color32 {
-        let own = self.facts().and_then(|facts| facts.angle.background);
-        own.map_or(colour::BACKGROUND, |[r, g, b]| Color32::from_rgb(r, g, b))
-    }
-
     fn make_sprites(&mut self) {
-        let (Some(facts), Some(snapshot)) = (&self.shown.facts, &self.shown.snapshot) else {
+        let Some(facts) = &self.shown.facts else {
             return;
         };
-        let colours = colour::colours(
-            self.colour_by,
-            snapshot,
-            facts,
-            &self.palette,
-            &mut self.range,
-        );
-        let positions = snapshot.get(Field::Position).map(lahar::Data::to_f64);
-        let volumes = snapshot.get(Field::Volume0).map(lahar::Data::to_f32);
-        let (Some(positions), Some(volumes)) = (positions, volumes) else {
-            return;
-        };
-        let d = snapshot.dimension;
-        let spacing = |volume: f32| if d == 2 { volume.sqrt() } else { volume.cbrt() };
-        self.sprites = Arc::new(
-            (positions.chunks_exact(d).zip(&volumes).zip(colours))
-                .map(|((x, &volume), colour)| Sprite {
-                    position: core::array::from_fn(|i| {
-                        if i < d {
-                            (x[i] - self.origin[i]) as f32
-                        } else {
-                            0.0
-                        }
-                    }),
-                    spacing: spacing(volume),
-                    colour,
-                })
-                .collect(),
-        );
+        let by = self.colour_by;
+        let snapshots = || self.shown.sides.iter().map(|side| &*side.snapshot);
+        // One legend for all sides.
+        self.range
+            .follow(by, snapshots().filter_map(|s| by.values(s)));
+        let colours = (by, self.palette.as_slice(), &self.range);
+        self.sprites = snapshots()
+            .map(|snapshot| Arc::new(sprites(snapshot, facts, &self.scenery, colours)))
+            .collect();
     }
 
     /// Says something for a few seconds; `now` by egui's clock.
@@ -517,106 +565,7 @@ impl AppState {
         self.notice = Some((what, now + SECONDS));
     }
 
-    fn order(&mut self, order: Order) {
+    pub(crate) fn order(&mut self, order: Order) {
         self.effects.push(Effect::Order(order));
     }
-}
-
-/// The domain, or the box of the particles.
-fn extent(facts: &Facts, snapshot: Option<&Snapshot>) -> (V3, V3) {
-    if let Some((min, max)) = facts.domain {
-        return (min, max);
-    }
-    let d = facts.dimension;
-    let mut min = [f64::INFINITY; 3];
-    let mut max = [f64::NEG_INFINITY; 3];
-    let positions = snapshot
-        .and_then(|s| s.get(Field::Position))
-        .map(lahar::Data::to_f64)
-        .unwrap_or_default();
-    for x in positions.chunks_exact(d) {
-        for i in 0..d {
-            min[i] = min[i].min(x[i]);
-            max[i] = max[i].max(x[i]);
-        }
-    }
-    for i in 0..3 {
-        if i >= d {
-            (min[i], max[i]) = (0.0, 0.0);
-        } else if min[i] > max[i] {
-            (min[i], max[i]) = (0.0, 1.0);
-        } else {
-            // Room to move in.
-            let room = (0.5 * (max[i] - min[i])).max(4.0 * facts.dx);
-            (min[i], max[i]) = (min[i] - room, max[i] + room);
-        }
-    }
-    (min, max)
-}
-
-/// The domain's edges; in 3D, a grid on its floor too.
-fn outline(facts: &Facts, (min, max): (V3, V3), origin: V3) -> Vec<Line> {
-    let mut lines = vec![];
-    let mut line = |a: V3, b: V3, half_width: f32, opacity: u8| {
-        let local = |p: V3| sub(p, origin).map(|c| c as f32);
-        lines.push(Line {
-            start: local(a),
-            half_width,
-            end: local(b),
-            colour: [0xa9, 0xc7, 0xd6, opacity],
-        });
-    };
-    if facts.domain.is_some() {
-        let corners = corners(min, max);
-        for i in 0..8_usize {
-            for axis in 0..facts.dimension {
-                let j = i | 1 << axis;
-                if j != i && (facts.dimension == 3 || j < 4) {
-                    line(corners[i], corners[j], 0.7, 150);
-                }
-            }
-        }
-    }
-    if facts.dimension == 3 {
-        let up = against(facts.gravity);
-        let vertical = (0..3).find(|&i| up[i] != 0.0).unwrap_or(1);
-        let floor = if up[vertical] > 0.0 {
-            min[vertical]
-        } else {
-            max[vertical]
-        };
-        let (a, b) = ((vertical + 1) % 3, (vertical + 2) % 3);
-        let step = round_step((max[a] - min[a]).max(max[b] - min[b]) / 12.0);
-        for (along, across) in [(a, b), (b, a)] {
-            let mut k = (min[across] / step).ceil();
-            while k * step <= max[across] {
-                let mut start = [floor; 3];
-                start[across] = k * step;
-                let mut end = start;
-                (start[along], end[along]) = (min[along], max[along]);
-                line(start, end, 0.4, 60);
-                k += 1.0;
-            }
-        }
-    }
-    lines
-}
-
-/// 1, 2 or 5 times a power of ten, at least `least`.
-pub fn round_step(least: f64) -> f64 {
-    let power = 10_f64.powf(least.log10().floor());
-    [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .map(|m| m * power)
-        .find(|&step| step >= least * (1.0 - 1e-9))
-        .unwrap_or(power)
-}
-
-/// Where a point of the window is in a rectangle, in −1..1, y up.
-pub fn within(rect: egui::Rect, at: egui::Pos2) -> [f64; 2] {
-    let d = at - rect.center();
-    [
-        f64::from(2.0 * d.x / rect.width()),
-        f64::from(-2.0 * d.y / rect.height()),
-    ]
 }

@@ -4,6 +4,8 @@
 //!   world [m] ──view──▶ camera's axes (right, up, back) ──projection──▶ −1..1 ──▶ points of the window
 //! ```
 
+use crate::scenes::Angle;
+
 /// Three numbers.
 pub type V3 = [f64; 3];
 
@@ -50,24 +52,29 @@ pub struct Camera {
     pub pitch: f64,
     /// Which way is up: an axis and its sign.
     pub up: V3,
+    /// Half the angle that the window's height spans \[rad\]; 3D.
+    half_angle: f64,
     /// Nothing is farther from the target than this \[m\].
     reach: f64,
 }
 
-/// Half the angle that the window's height spans in 3D \[rad\].
+/// [`Camera::half_angle`] where the scene does not say.
 const HALF_ANGLE: f64 = 0.35;
+/// Wider, and nothing would be seen for the edges \[rad\].
+const WIDEST: f64 = 1.4;
 /// Air around the scene.
 const MARGIN: f64 = 1.06;
 /// Short of the poles, where the orbit would flip \[rad\].
 const STEEPEST: f64 = 1.5;
 
 impl Camera {
-    /// Sees the whole box in a window of `aspect` = width/height; down is where gravity pulls.
+    /// Sees what `angle` asks for, or else the whole box, in a window of `aspect` = width/height; down
+    /// is where gravity pulls.
     pub fn fit(
         dimension: usize,
         (min, max): (V3, V3),
         gravity: V3,
-        direction: Option<V3>,
+        angle: Angle,
         aspect: f64,
     ) -> Self {
         let size = sub(max, min);
@@ -84,9 +91,12 @@ impl Camera {
             } else {
                 against(gravity)
             },
+            half_angle: angle.field_of_view.map_or(HALF_ANGLE, |degrees| {
+                (0.5 * degrees.to_radians()).clamp(0.01, WIDEST)
+            }),
             reach,
         };
-        if let Some(direction) = direction {
+        if let Some(direction) = angle.direction {
             camera.look_from(direction);
         }
         camera.half_height = if dimension == 2 {
@@ -105,6 +115,12 @@ impl Camera {
             }
             half_height
         };
+        if let Some(center) = angle.center {
+            camera.target = center;
+        }
+        if let Some(height) = angle.height {
+            camera.half_height = 0.5 * height;
+        }
         camera
     }
 
@@ -146,7 +162,7 @@ impl Camera {
 
     /// From the eye to the target \[m\].
     fn distance(&self) -> f64 {
-        self.half_height / HALF_ANGLE.tan()
+        self.half_height / self.half_angle.tan()
     }
 
     fn eye(&self) -> V3 {
@@ -184,8 +200,8 @@ impl Camera {
             m[3][3] = 1.0;
         } else {
             let (near, far) = self.depths();
-            m[0][0] = (1.0 / (HALF_ANGLE.tan() * aspect)) as f32;
-            m[1][1] = (1.0 / HALF_ANGLE.tan()) as f32;
+            m[0][0] = (1.0 / (self.half_angle.tan() * aspect)) as f32;
+            m[1][1] = (1.0 / self.half_angle.tan()) as f32;
             m[2][2] = (far / (near - far)) as f32;
             m[2][3] = -1.0;
             m[3][2] = (near * far / (near - far)) as f32;
@@ -210,7 +226,7 @@ impl Camera {
             if depth <= 0.0 {
                 return None;
             }
-            depth * HALF_ANGLE.tan()
+            depth * self.half_angle.tan()
         };
         Some([x / (half_height * aspect), y / half_height])
     }
@@ -236,7 +252,7 @@ impl Camera {
             return self.half_height;
         }
         let depth = self.distance() - dot(self.axes()[2], sub(point, self.target));
-        depth.max(1e-9) * HALF_ANGLE.tan()
+        depth.max(1e-9) * self.half_angle.tan()
     }
 
     /// Turns about the target, by parts of the window's height.
@@ -300,13 +316,13 @@ mod tests {
 
     fn cameras() -> [Camera; 3] {
         [
-            Camera::fit(2, ([0.0; 3], [4.0, 2.0, 0.0]), DOWN, None, 1.5),
-            Camera::fit(3, ([0.0; 3], [4.0, 2.0, 1.0]), DOWN, None, 1.5),
+            Camera::fit(2, ([0.0; 3], [4.0, 2.0, 0.0]), DOWN, Angle::default(), 1.5),
+            Camera::fit(3, ([0.0; 3], [4.0, 2.0, 1.0]), DOWN, Angle::default(), 1.5),
             Camera::fit(
                 3,
                 ([-1.0; 3], [4.0, 2.0, 1.0]),
                 [0.0, 0.0, -9.81],
-                None,
+                Angle::default(),
                 0.7,
             ),
         ]
@@ -366,6 +382,30 @@ mod tests {
             let from = normalize([0.3, 0.4, 0.8]);
             camera.look_from(from);
             assert!(length(sub(camera.axes()[2], from)) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_scene_that_says_what_to_look_at_is_looked_at_so() {
+        let angle = Angle {
+            center: Some([1.0, 0.5, 0.25]),
+            height: Some(0.8),
+            field_of_view: Some(60.0),
+            ..Angle::default()
+        };
+        for dimension in [2, 3] {
+            let camera = Camera::fit(dimension, ([0.0; 3], [4.0, 2.0, 1.0]), DOWN, angle, 1.5);
+            assert_eq!(camera.project([1.0, 0.5, 0.25], 1.5), Some([0.0, 0.0]));
+            assert!((camera.half_height_at(camera.target) - 0.4).abs() < 1e-12);
+            let top = add(camera.target, scale(camera.axes()[1], 0.4));
+            assert!((camera.project(top, 1.5).unwrap()[1] - 1.0).abs() < 1e-12);
+            let away = (camera.project(add(top, camera.axes()[2]), 1.5)).map(|[_, y]| y);
+            if dimension == 2 {
+                assert!((away.unwrap() - 1.0).abs() < 1e-12);
+            } else {
+                // 0.4 m up at 0.4/tan 30° = 0.69 m from the eye: a metre nearer is behind it.
+                assert_eq!(away, None);
+            }
         }
     }
 

@@ -3,8 +3,7 @@
 use eframe::egui::Color32;
 use lahar::{Field, Snapshot};
 
-use crate::scenes::{Look, Swatch};
-use crate::solver::Facts;
+use crate::scenes::{Facts, Look, Swatch};
 
 /// Behind everything (Taichi's examples: 0x112F41).
 pub const BACKGROUND: Color32 = Color32::from_rgb(0x11, 0x2f, 0x41);
@@ -116,16 +115,8 @@ impl ColourBy {
         }
     }
 
-    /// The range of `values` worth telling apart.
-    fn range_of(self, values: &[f32]) -> Option<(f32, f32)> {
-        // A sample is enough, and outliers should not flatten the rest.
-        let every = values.len().div_ceil(SAMPLE).max(1);
-        let mut sample: Vec<f32> = values
-            .iter()
-            .step_by(every)
-            .copied()
-            .filter(|v| v.is_finite())
-            .collect();
+    /// The range of a sample of values worth telling apart.
+    fn range_of(self, mut sample: Vec<f32>) -> Option<(f32, f32)> {
         if sample.is_empty() {
             return None;
         }
@@ -185,13 +176,20 @@ impl Range {
         self.ends.unwrap_or((0.0, 1.0))
     }
 
-    /// Takes in new numbers: widens at once, narrows slowly.
-    pub fn follow(&mut self, by: ColourBy, values: &[f32]) {
+    /// Takes in new numbers, those of all sides: widens at once, narrows slowly.
+    pub fn follow(&mut self, by: ColourBy, sides: impl IntoIterator<Item = Vec<f32>>) {
         const NARROW: f32 = 0.03;
         if self.by != by {
             *self = Self { by, ends: None };
         }
-        let Some((low, high)) = by.range_of(values) else {
+        let mut sample = vec![];
+        for values in sides {
+            // A sample is enough, and outliers should not flatten the rest.
+            let every = values.len().div_ceil(SAMPLE).max(1);
+            let some = values.into_iter().step_by(every);
+            sample.extend(some.filter(|value| value.is_finite()));
+        }
+        let Some((low, high)) = by.range_of(sample) else {
             return;
         };
         let (low, high) = match self.ends {
@@ -264,10 +262,9 @@ pub fn colours(
     snapshot: &Snapshot,
     facts: &Facts,
     palette: &[Color32],
-    range: &mut Range,
+    range: &Range,
 ) -> Vec<[u8; 4]> {
     if let Some(values) = by.values(snapshot) {
-        range.follow(by, &values);
         let (low, high) = range.ends();
         // 256 steps are as fine as the screen shows, and cheaper than a blend a particle.
         let steps: Vec<_> = (0..256)
@@ -325,13 +322,13 @@ mod tests {
     #[test]
     fn a_range_widens_at_once_and_narrows_slowly() {
         let mut range = Range::default();
-        range.follow(ColourBy::Speed, &[0.0, 1.0]);
+        range.follow(ColourBy::Speed, [vec![0.0, 1.0]]);
         assert_eq!(range.ends(), (0.0, 1.0));
-        range.follow(ColourBy::Speed, &[0.0, 5.0]);
+        range.follow(ColourBy::Speed, [vec![0.0, 1.0], vec![5.0]]);
         assert_eq!(range.ends(), (0.0, 5.0));
-        range.follow(ColourBy::Speed, &[0.0, 1.0]);
+        range.follow(ColourBy::Speed, [vec![0.0, 1.0]]);
         assert!(range.ends().1 > 4.0 && range.ends().1 < 5.0);
-        range.follow(ColourBy::Jacobian, &[0.9, 1.05]);
+        range.follow(ColourBy::Jacobian, [vec![0.9, 1.05]]);
         assert!((range.ends().0 - 0.9).abs() < 1e-6 && (range.ends().1 - 1.1).abs() < 1e-6);
     }
 

@@ -5,6 +5,8 @@
 //!   window ◀─ renderer ◀─ Picture ◀─────── AppState ◀─ Shown ◀─┘
 //! ```
 //!
+//! A scene runs alone or, to compare settings, several times side by side; a finished run is replayed.
+//!
 //! [`run`] opens it. [`app_state`] holds what the window knows and decides, and needs no window;
 //! [`solver`] runs the simulation; [`renderer`] draws. Where there is no display or nothing to draw
 //! with, [`run`] says so in its error, before anything is opened, and a caller may go on without.
@@ -12,11 +14,17 @@
 pub mod app_state;
 pub mod camera;
 pub mod colour;
+pub mod compare;
 pub mod controls;
+pub mod hand;
+mod overlay;
 pub mod panel;
 pub mod renderer;
+mod scene_list;
+mod scenery;
 pub mod scenes;
 mod screenshot;
+pub mod shelf;
 pub mod solver;
 pub mod view;
 mod window;
@@ -32,15 +40,20 @@ use eframe::egui_wgpu::{WgpuSetup, WgpuSetupCreateNew, wgpu};
 use app_state::AppState;
 pub use controls::key_help;
 use lahar::Isa;
-use scenes::{SceneSource, Shelf};
-use solver::Solver;
+use lahar_io::scene::Comparison;
+use scenes::SceneSource;
+use shelf::Shelf;
+use solver::{Solver, Wanted};
 use window::Window;
 
 /// How the window opens.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The scene to open, by a built-in's name or a path; `None`: the default one.
+    /// The scene to open, by a built-in's name or a path; a run's folder is replayed. `None`: the
+    /// default scene.
     pub scene: Option<String>,
+    /// Values of a key that it is to run with, side by side.
+    pub comparison: Option<Comparison>,
     /// Keys and values laid over every scene, as `--set` on the command line.
     pub overrides: Vec<(String, String)>,
     /// The instruction set to run on.
@@ -56,6 +69,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             scene: None,
+            comparison: None,
             overrides: vec![],
             isa: Isa::detect(),
             size: [1180.0, 720.0],
@@ -114,7 +128,12 @@ pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), Ap
     let adapter_setup = WgpuSetupCreateNew::without_display_handle();
     check_adapter(&adapter_setup.instance_descriptor)?;
 
-    let state = AppState::new(source.list(), DEFAULT_SCENE, options.scene.as_deref());
+    let wanted = Wanted {
+        scene: options.scene.unwrap_or_else(|| DEFAULT_SCENE.to_owned()),
+        comparison: options.comparison,
+        ..Wanted::default()
+    };
+    let state = AppState::new(source.list(), DEFAULT_SCENE, Some(wanted));
     let solver = Solver::start(Arc::clone(&source))
         .map_err(|error| AppError::Window(format!("no thread for the solver: {error}")))?;
     let mut native = eframe::NativeOptions {

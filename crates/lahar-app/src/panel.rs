@@ -2,10 +2,11 @@
 
 use eframe::egui::{self, DragValue, RichText, Slider, Ui};
 
-use crate::app_state::AppState;
+use crate::app_state::{AppState, SPEEDS};
 use crate::colour::ColourBy;
+use crate::compare::MOST_SIDES;
 use crate::controls::{Action, Direction};
-use crate::scenes::SettingValue;
+use crate::scenes::{Setting, SettingValue};
 use crate::solver::Condition;
 
 /// The whole panel.
@@ -23,20 +24,157 @@ pub fn panel(state: &mut AppState, ui: &mut Ui) {
             }
         });
     });
+    let recorded = state.recorded_frames().is_some();
     egui::ScrollArea::vertical().show(ui, |ui| {
         scene(state, ui);
         ui.separator();
         clock(state, ui);
         ui.separator();
-        gravity(state, ui);
-        ui.separator();
+        if !recorded {
+            gravity(state, ui);
+            ui.separator();
+        }
         looks(state, ui);
         ui.separator();
-        hand(state, ui);
-        ui.separator();
+        if !recorded {
+            hand(state, ui);
+            ui.separator();
+        }
         readouts(state, ui);
-        ui.separator();
-        egui::CollapsingHeader::new("Settings of the scene").show(ui, |ui| settings(state, ui));
+        if !recorded {
+            ui.separator();
+            egui::CollapsingHeader::new("Settings of the scene").show(ui, |ui| settings(state, ui));
+            egui::CollapsingHeader::new("Compare")
+                .default_open(state.comparison().is_some())
+                .show(ui, |ui| compare(state, ui));
+        }
+        ui.add_space(8.0);
+    });
+}
+
+/// Below a recording: where in it one is.
+pub fn player(state: &mut AppState, ui: &mut Ui, frames: usize) {
+    ui.add_space(4.0);
+    ui.horizontal(|ui| {
+        let stands = state.paused || state.shown().condition == Condition::Ended;
+        let (label, hint) = if stands {
+            ("Play", "Space")
+        } else {
+            ("Pause", "Space")
+        };
+        let size = egui::vec2(54.0, ui.spacing().interact_size.y);
+        if ui
+            .add_sized(size, egui::Button::new(label))
+            .on_hover_text(hint)
+            .clicked()
+        {
+            state.act(Action::Pause);
+        }
+        let now = state.readouts();
+        let last = frames.saturating_sub(1);
+        let mut frame = now.frame;
+        let text = format!("frame {} of {}  ·  {:.3} s", now.frame, last, now.time);
+        ui.spacing_mut().slider_width = (ui.available_width() - 200.0).max(40.0);
+        let slider = Slider::new(&mut frame, 0..=last).show_value(false);
+        let slider = ui.add(slider);
+        let label = ui.label(text);
+        if slider.labelled_by(label.id).changed() {
+            state.seek(frame);
+        }
+    });
+    ui.add_space(4.0);
+}
+
+/// A widget for a value; of numbers, `speed` parts of it a point of dragging.
+fn value(
+    ui: &mut Ui,
+    salt: impl std::hash::Hash + std::fmt::Debug,
+    value: &mut SettingValue,
+) -> egui::Response {
+    match value {
+        SettingValue::Number(number) => {
+            let speed = (number.abs() * 0.01).max(1e-6);
+            ui.add(DragValue::new(number).speed(speed).max_decimals(8))
+        }
+        SettingValue::Word(word, words) => {
+            egui::ComboBox::from_id_salt(salt)
+                .width(84.0)
+                .selected_text(word.as_str())
+                .show_ui(ui, |ui| {
+                    for choice in *words {
+                        ui.selectable_value(word, (*choice).to_owned(), *choice);
+                    }
+                })
+                .response
+        }
+    }
+}
+
+/// The same scene with several values of a setting.
+fn compare(state: &mut AppState, ui: &mut Ui) {
+    let full_name = |setting: &Setting| match setting.group.as_str() {
+        "scene" => setting.name.clone(),
+        group => format!("{group}: {}", setting.name),
+    };
+    let chosen = state.settings.iter().position(|s| s.key == state.draft.key);
+    let mut choice = chosen;
+    ui.horizontal(|ui| {
+        let label = ui.label("setting").id;
+        egui::ComboBox::from_id_salt("compared setting")
+            .width(160.0)
+            .selected_text(chosen.map_or_else(String::new, |i| full_name(&state.settings[i])))
+            .show_ui(ui, |ui| {
+                for (i, setting) in state.settings.iter().enumerate() {
+                    ui.selectable_value(&mut choice, Some(i), full_name(setting));
+                }
+            })
+            .response
+            .labelled_by(label);
+    });
+    if choice != chosen
+        && let Some(i) = choice
+    {
+        state.draft.choose(&state.settings[i]);
+    }
+    let mut removed = None;
+    let several = state.draft.values.len() > 2;
+    for (i, draft) in state.draft.values.iter_mut().enumerate() {
+        ui.horizontal(|ui| {
+            let label = ui.label(format!("value {}", i + 1)).id;
+            value(ui, ("compared value", i), draft).labelled_by(label);
+            if several && ui.small_button("×").on_hover_text("Without it").clicked() {
+                removed = Some(i);
+            }
+        });
+    }
+    if let Some(i) = removed {
+        state.draft.values.remove(i);
+    }
+    ui.horizontal(|ui| {
+        let ready = state.draft.comparison();
+        let run = egui::Button::new("Side by side");
+        if ui
+            .add_enabled(ready.is_some(), run)
+            .on_hover_text("Restarts the scene with each of the values (V)")
+            .clicked()
+        {
+            state.compare(ready);
+        }
+        let running = state.comparison().is_some();
+        if ui
+            .add_enabled(running, egui::Button::new("Alone"))
+            .on_hover_text("The scene as it was (V)")
+            .clicked()
+        {
+            state.compare(None);
+        }
+        let room = (2..MOST_SIDES).contains(&state.draft.values.len());
+        if ui
+            .add_enabled(room, egui::Button::new("One more"))
+            .clicked()
+        {
+            state.draft.add();
+        }
     });
 }
 
@@ -51,24 +189,7 @@ fn settings(state: &mut AppState, ui: &mut Ui) {
                 ui.end_row();
             }
             let label = ui.label(&setting.name).id;
-            match &mut setting.value {
-                SettingValue::Number(number) => {
-                    let speed = (number.abs() * 0.01).max(1e-6);
-                    ui.add(DragValue::new(number).speed(speed).max_decimals(8))
-                        .labelled_by(label);
-                }
-                SettingValue::Word(word, words) => {
-                    egui::ComboBox::from_id_salt(&setting.key)
-                        .selected_text(word.as_str())
-                        .show_ui(ui, |ui| {
-                            for choice in *words {
-                                ui.selectable_value(word, (*choice).to_owned(), *choice);
-                            }
-                        })
-                        .response
-                        .labelled_by(label);
-                }
-            }
+            value(ui, &setting.key, &mut setting.value).labelled_by(label);
             ui.end_row();
         }
     });
@@ -129,20 +250,28 @@ fn scene(state: &mut AppState, ui: &mut Ui) {
 }
 
 fn clock(state: &mut AppState, ui: &mut Ui) {
+    let recorded = state.recorded_frames().is_some();
     ui.horizontal(|ui| {
         if ui.button("Restart").on_hover_text("R").clicked() {
             state.act(Action::Restart);
         }
-        let pause = if state.paused { "Go on" } else { "Pause" };
-        if ui.button(pause).on_hover_text("Space").clicked() {
-            state.act(Action::Pause);
+        if !recorded {
+            let pause = if state.paused { "Go on" } else { "Pause" };
+            if ui.button(pause).on_hover_text("Space").clicked() {
+                state.act(Action::Pause);
+            }
         }
-        if ui.button("Substep").on_hover_text(".").clicked() {
+        let (step, key) = if recorded {
+            ("Next frame", ".")
+        } else {
+            ("Substep", ".")
+        };
+        if ui.button(step).on_hover_text(key).clicked() {
             state.act(Action::Substep);
         }
     });
     let mut speed = state.speed;
-    let slider = Slider::new(&mut speed, 0.01..=8.0)
+    let slider = Slider::new(&mut speed, SPEEDS[0]..=SPEEDS[SPEEDS.len() - 1])
         .logarithmic(true)
         .suffix("×")
         .text("speed");
@@ -212,7 +341,14 @@ fn looks(state: &mut AppState, ui: &mut Ui) {
             .text("radius")
             .fixed_decimals(2),
     )
-    .on_hover_text("Of a particle, in parts of the distance to its neighbours");
+    .on_hover_text(
+        "Of a particle, in parts of the distance to its neighbours, or of the scene's own",
+    );
+    ui.horizontal(|ui| {
+        let label = ui.label("background").id;
+        ui.color_edit_button_srgba(&mut state.background)
+            .labelled_by(label);
+    });
     if state.colour_by == ColourBy::Material {
         let names: Vec<String> = state
             .facts()
@@ -235,23 +371,42 @@ fn looks(state: &mut AppState, ui: &mut Ui) {
 }
 
 fn hand(state: &mut AppState, ui: &mut Ui) {
+    let gravity = state.scene_gravity();
     ui.add(
-        Slider::new(&mut state.hand.strength, 0.1..=20.0)
+        Slider::new(&mut state.hand.pull, 0.1 * gravity..=20.0 * gravity)
             .logarithmic(true)
-            .suffix(" g")
+            .max_decimals(1)
+            .suffix(" m/s²")
             .text("hand"),
     )
-    .on_hover_text("How hard the mouse pulls, in parts of the scene's gravity");
-    ui.add(
-        Slider::new(&mut state.hand.reach, 0.02..=2.0)
+    .on_hover_text("How hard the mouse attracts and repels");
+    let dimension = state.facts().map_or(2, |facts| facts.dimension);
+    let smallest = state.scenery.smallest(dimension);
+    ui.horizontal(|ui| {
+        let mut everywhere = state.hand.reach.is_infinite();
+        let most = 2.0 * smallest;
+        let mut reach = state.hand.reach.min(most);
+        let slider = Slider::new(&mut reach, 0.01 * most..=most)
             .logarithmic(true)
-            .text("reach"),
-    )
-    .on_hover_text("How far, in parts of the scene's smallest extent");
+            .max_decimals(3)
+            .suffix(" m");
+        let slider = ui
+            .add_enabled(!everywhere, slider)
+            .on_hover_text("How far the mouse reaches");
+        let toggled = ui.checkbox(&mut everywhere, "all").changed();
+        ui.label("reach");
+        if slider.changed() || toggled {
+            state.hand.reach = if everywhere { f64::INFINITY } else { reach };
+        }
+    });
 }
 
 fn readouts(state: &AppState, ui: &mut Ui) {
     let now = state.readouts();
+    let recorded = state.recorded_frames();
+    if let Some(first) = state.sides().first().filter(|side| !side.title.is_empty()) {
+        ui.label(RichText::new(&first.title).strong());
+    }
     egui::Grid::new("readouts").num_columns(2).show(ui, |ui| {
         let mut row = |name: &str, value: String| {
             ui.label(name);
@@ -260,11 +415,16 @@ fn readouts(state: &AppState, ui: &mut Ui) {
         };
         row("simulated", format!("{:.3} s", now.time));
         row("real time", real_time(state));
-        row("substeps a frame", now.substeps_per_frame.to_string());
-        row("dt", format!("{:.3e} s", now.dt));
-        row("limited by", now.limit.name().to_owned());
+        if let Some(frames) = recorded {
+            row("frame", format!("{} of {}", now.frame, frames - 1));
+        } else {
+            row("substeps a frame", now.substeps_per_frame.to_string());
+            row("dt", format!("{:.3e} s", now.dt));
+            row("limited by", now.limit.name().to_owned());
+            let rate = millions(now.particle_steps_per_second);
+            row("particle-steps/s", rate);
+        }
         row("particles", grouped(now.particles as u64));
-        row("particle-steps/s", millions(now.particle_steps_per_second));
         if let Some(facts) = state.facts() {
             row("numbers", facts.numbers.clone());
         }
@@ -276,6 +436,7 @@ pub fn real_time(state: &AppState) -> String {
     match state.shown().condition {
         Condition::Running => format!("{:.2}×", state.readouts().real_time),
         Condition::Paused => "paused".to_owned(),
+        Condition::Ended => "at the end".to_owned(),
         Condition::Opening => "opening".to_owned(),
         Condition::Failed(_) => "stopped".to_owned(),
     }

@@ -13,6 +13,7 @@ mod diagnostics;
 mod folder;
 mod frames;
 mod record;
+mod recording;
 mod writer;
 
 use std::fmt;
@@ -24,6 +25,7 @@ pub use diagnostics::DiagnosticsFile;
 pub use folder::RunFolder;
 pub use frames::{frame_name, write_frame};
 pub use record::{PhaseSeconds, Record, Status};
+pub use recording::{Recording, RecordingError};
 pub use writer::{Film, Pace, Pictures, Plan, Writer, Written, film_pace};
 
 /// A file or folder that could not be made or written.

@@ -1,0 +1,107 @@
+//! The hand in the scene: where the pointer grips, and what the simulation is told of it.
+
+use eframe::egui;
+use lahar::{Command, Pointer, PointerAction};
+use lahar_io::scene::Controls;
+
+use crate::app_state::AppState;
+use crate::camera::{V3, add, dot, sub};
+use crate::renderer::Sprite;
+use crate::solver::Order;
+
+/// The hand's reach and strength.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hand {
+    /// How far it reaches \[m\]; infinite: everywhere.
+    pub reach: f64,
+    /// Acceleration towards it or away from it \[m/s²\].
+    pub pull: f64,
+}
+
+/// Reach, in parts of the scene's smallest extent, where the scene does not say.
+const REACH: f64 = 0.25;
+/// Pull, in parts of gravity, where the scene does not say: mpm128 pulls with 100 where gravity is 30.
+const PULL: f64 = 100.0 / 30.0;
+
+impl Hand {
+    /// As the scene wants it, where `gravity` \[m/s²\] is usual and the smallest extent is `smallest` \[m\].
+    pub(crate) fn of(controls: Controls, gravity: f64, smallest: f64) -> Self {
+        Self {
+            reach: controls.reach.unwrap_or(REACH * smallest),
+            pull: controls.pull.unwrap_or(PULL * gravity),
+        }
+    }
+}
+
+/// What a pressed button means in the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grip {
+    /// Towards the hand.
+    Attract,
+    /// Away from it.
+    Repel,
+    /// Along with it.
+    Drag,
+}
+
+impl AppState {
+    /// The hand at `at` (−1..1 of the drawing of `side`) doing `grip`, moving with `velocity` \[1/s, of −1..1\].
+    pub fn hold(&mut self, side: usize, at: [f64; 2], grip: Grip, velocity: [f64; 2]) {
+        let Some(camera) = &self.camera else { return };
+        let through = match self.held {
+            Some((position, _)) => position,
+            None => self.nearest(side, at).unwrap_or(camera.target),
+        };
+        let position = camera.unproject(at, self.aspect, through);
+        let pull = self.hand.pull;
+        let action = match grip {
+            Grip::Attract => PointerAction::Attract(pull),
+            Grip::Repel => PointerAction::Attract(-pull),
+            Grip::Drag => {
+                let ahead = [at[0] + velocity[0], at[1] + velocity[1]];
+                let there = camera.unproject(ahead, self.aspect, through);
+                PointerAction::Drag(sub(there, position))
+            }
+        };
+        self.held = Some((position, grip));
+        let pointer = Pointer {
+            position,
+            radius: self.hand.reach,
+            action,
+        };
+        self.order(Order::Tell(Command::Pointer(Some(pointer))));
+    }
+
+    /// The hand is lifted.
+    pub fn release(&mut self) {
+        if self.held.take().is_some() {
+            self.order(Order::Tell(Command::Pointer(None)));
+        }
+    }
+
+    /// The particle nearest to the eye under `at`, in 3D.
+    fn nearest(&self, side: usize, at: [f64; 2]) -> Option<V3> {
+        const CLOSE: f64 = 0.04;
+        let camera = (self.camera.as_ref()).filter(|camera| camera.dimension == 3)?;
+        let back = camera.axes()[2];
+        let near = |sprite: &Sprite| {
+            let point = add(sprite.position.map(f64::from), self.scenery.origin);
+            let [x, y] = camera.project(point, self.aspect)?;
+            let off = f64::hypot((x - at[0]) * self.aspect, y - at[1]);
+            (off < CLOSE).then(|| (dot(back, point), point))
+        };
+        let found = self.sprites.get(side)?.iter().filter_map(near);
+        found
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, point)| point)
+    }
+}
+
+/// Where a point of the window is in a rectangle, in −1..1, y up.
+pub fn within(rect: egui::Rect, at: egui::Pos2) -> [f64; 2] {
+    let d = at - rect.center();
+    [
+        f64::from(2.0 * d.x / rect.width()),
+        f64::from(-2.0 * d.y / rect.height()),
+    ]
+}

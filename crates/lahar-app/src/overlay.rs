@@ -1,0 +1,318 @@
+//! What is written over the scene: titles, legend, scale, keys, messages.
+
+use eframe::egui::{
+    self, Align2, Color32, CornerRadius, FontId, Pos2, Rect, Shape, Stroke, Ui, Vec2, pos2, vec2,
+};
+
+use crate::app_state::AppState;
+use crate::colour::{self, ColourBy};
+use crate::controls;
+use crate::hand::Grip;
+use crate::panel::{grouped, millions, real_time};
+use crate::scenery::round_step;
+use crate::solver::Condition;
+
+const INK: Color32 = Color32::from_rgb(0xd7, 0xe3, 0xea);
+const SHADE: Color32 = Color32::from_black_alpha(140);
+
+/// Between a side and the ones to its left and above.
+pub(crate) fn edges(ui: &Ui, rect: Rect, cell: Rect) {
+    let stroke = Stroke::new(1.0, Color32::from_white_alpha(60));
+    let painter = ui.painter_at(rect);
+    if cell.left() > rect.left() {
+        painter.vline(cell.left(), cell.y_range(), stroke);
+    }
+    if cell.top() > rect.top() {
+        painter.hline(cell.x_range(), cell.top(), stroke);
+    }
+}
+
+/// The circle that the hand reaches.
+pub(crate) fn hand(state: &AppState, ui: &Ui, rect: Rect) {
+    let (Some((position, grip)), Some(camera)) = (state.held, &state.camera) else {
+        return;
+    };
+    let Some([x, y]) = camera.project(position, state.aspect) else {
+        return;
+    };
+    let centre = rect.center() + 0.5 * vec2(x as f32 * rect.width(), -y as f32 * rect.height());
+    let radius = state.hand.reach / camera.half_height_at(position) * 0.5;
+    let colour = match grip {
+        Grip::Attract => Color32::from_rgb(0x7f, 0xd0, 0x9c),
+        Grip::Repel => colour::JELLY,
+        Grip::Drag => Color32::WHITE,
+    };
+    let painter = ui.painter_at(rect);
+    if radius.is_finite() {
+        let radius = radius as f32 * rect.height();
+        painter.circle_stroke(centre, radius, Stroke::new(1.5, colour));
+    }
+    painter.circle_filled(centre, 3.0, colour);
+}
+
+/// What the colours mean, under the title.
+pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
+    let painter = ui.painter_at(rect);
+    let font = FontId::proportional(13.0);
+    let Some(facts) = state.facts() else { return };
+    let below_title = if shows_numbers(state) { 60.0 } else { 40.0 };
+    let corner = rect.left_top() + vec2(14.0, below_title);
+    if state.colour_by == ColourBy::Material {
+        if facts.swatches.len() < 2 {
+            return; // one needs no telling apart
+        }
+        for (i, (swatch, colour)) in facts.swatches.iter().zip(&state.palette).enumerate() {
+            let at = corner + vec2(6.0, 8.0 + 20.0 * i as f32);
+            painter.circle_filled(at, 5.0, *colour);
+            let at = at + vec2(12.0, 0.0);
+            painter.text(at, Align2::LEFT_CENTER, &swatch.name, font.clone(), INK);
+        }
+        return;
+    }
+    let shade = Rect::from_min_size(corner - vec2(4.0, 0.0), vec2(128.0, 188.0));
+    painter.rect_filled(shade, CornerRadius::same(4), SHADE);
+    let unit = state.colour_by.unit(facts.dimension);
+    let mut title = state.colour_by.name().to_owned();
+    if !unit.is_empty() {
+        title = format!("{title} [{unit}]");
+    }
+    let at = shade.left_top() + vec2(8.0, 6.0);
+    painter.text(at, Align2::LEFT_TOP, title, font.clone(), INK);
+    let bar = Rect::from_min_size(shade.left_top() + vec2(10.0, 30.0), vec2(14.0, 146.0));
+    let steps = 64;
+    for i in 0..steps {
+        let at = |k: i32| bar.bottom() - bar.height() * k as f32 / steps as f32;
+        let strip = Rect::from_x_y_ranges(bar.x_range(), at(i + 1)..=at(i));
+        let colour = colour::along(state.colour_by.ramp(), (i as f32 + 0.5) / steps as f32);
+        painter.rect_filled(strip, CornerRadius::ZERO, colour);
+    }
+    let (low, high) = state.range.ends();
+    for (part, value) in [(0.0, low), (0.5, 0.5 * (low + high)), (1.0, high)] {
+        let at = pos2(bar.right() + 7.0, bar.bottom() - bar.height() * part);
+        painter.text(at, Align2::LEFT_CENTER, short(value), font.clone(), INK);
+    }
+}
+
+/// A number in a few characters.
+fn short(value: f32) -> String {
+    let size = value.abs();
+    if size != 0.0 && !(1e-3..1e5).contains(&size) {
+        format!("{value:.2e}")
+    } else if size < 10.0 {
+        format!("{value:.3}")
+    } else {
+        format!("{value:.1}")
+    }
+}
+
+/// How long a metre is, in 2D.
+pub(crate) fn scale_bar(state: &AppState, ui: &Ui, rect: Rect) {
+    let Some(camera) = state.camera.as_ref().filter(|camera| camera.dimension == 2) else {
+        return;
+    };
+    let metre = f64::from(rect.height()) / (2.0 * camera.half_height);
+    let step = round_step(60.0 / metre);
+    let width = (step * metre) as f32;
+    let painter = ui.painter_at(rect);
+    let end = rect.right_bottom() + vec2(-16.0, -14.0);
+    let start = end - vec2(width, 0.0);
+    let stroke = Stroke::new(1.0, INK);
+    painter.line_segment([start, end], stroke);
+    for at in [start, end] {
+        painter.line_segment([at - vec2(0.0, 4.0), at], stroke);
+    }
+    let text = if step >= 1.0 {
+        format!("{step} m")
+    } else if step >= 0.01 {
+        format!("{} cm", (step * 100.0).round())
+    } else {
+        format!("{:.1e} m", step)
+    };
+    let middle = start + vec2(0.5 * width, -6.0);
+    painter.text(
+        middle,
+        Align2::CENTER_BOTTOM,
+        text,
+        FontId::proportional(12.0),
+        INK,
+    );
+}
+
+/// Whether the numbers stand over the scene: the panel has no room for them, or is not there.
+fn shows_numbers(state: &AppState) -> bool {
+    !state.show_panel || state.sides().len() > 1
+}
+
+/// The scene's name and the side's, and the numbers that the panel does not show.
+pub(crate) fn status(state: &AppState, ui: &Ui, rect: Rect, side: usize) {
+    let Some(facts) = state.facts() else { return };
+    let painter = ui.painter_at(rect);
+    let mut parts = vec![];
+    if side == 0 {
+        parts.push(facts.card.title.clone());
+    }
+    if let Some(side) = state
+        .sides()
+        .get(side)
+        .filter(|side| !side.title.is_empty())
+    {
+        parts.push(side.title.clone());
+    }
+    if side == 0 && state.speed != 1.0 {
+        parts.push(format!("speed {}×", state.speed));
+    }
+    if side == 0 && state.paused {
+        parts.push("paused".to_owned());
+    }
+    let at = rect.left_top() + vec2(14.0, 12.0);
+    let text = parts.join("  ·  ");
+    let title = painter.text(at, Align2::LEFT_TOP, text, FontId::proportional(15.0), INK);
+    if !shows_numbers(state) {
+        return;
+    }
+    let Some(now) = state.sides().get(side).map(|side| side.readouts) else {
+        return;
+    };
+    let mut parts = vec![format!("{:.2} s", now.time)];
+    if side == 0 {
+        parts.push(real_time(state));
+    }
+    if state.recorded_frames().is_none() {
+        parts.push(format!("{} substeps a frame", now.substeps_per_frame));
+        parts.push(format!("dt {:.2e} s ({})", now.dt, now.limit.name()));
+    }
+    parts.push(format!("{} particles", grouped(now.particles as u64)));
+    if state.recorded_frames().is_none() {
+        let rate = millions(now.particle_steps_per_second);
+        parts.push(format!("{rate} particle-steps/s"));
+    }
+    let at = title.left_bottom() + vec2(0.0, 4.0);
+    let text = parts.join("  ·  ");
+    painter.text(at, Align2::LEFT_TOP, text, FontId::proportional(12.0), INK);
+}
+
+/// The keys at the upper right, where scenes have their air; the scenes along the bottom.
+pub(crate) fn hints(state: &AppState, ui: &Ui, rect: Rect) {
+    let dimension = state.facts().map_or(2, |facts| facts.dimension);
+    let rows = controls::hints(state.recorded_frames().is_some(), dimension);
+    let font = FontId::proportional(12.0);
+    let painter = ui.painter_at(rect);
+    let height = 16.0;
+
+    let scenes: Vec<String> = (state.scenes.iter().take(9).enumerate())
+        .map(|(i, card)| format!("{} {}", i + 1, card.name))
+        .collect();
+    let lines = wrap(&painter, &font, &scenes, rect.width() - 190.0);
+    for (i, line) in lines.iter().rev().enumerate() {
+        let at = rect.left_bottom() + vec2(14.0, -8.0 - height * i as f32);
+        painter.text(at, Align2::LEFT_BOTTOM, line, font.clone(), INK);
+    }
+
+    let size = vec2(400.0, height * rows.len() as f32 + 12.0);
+    let table = Rect::from_min_size(rect.right_top() + vec2(-size.x - 10.0, 10.0), size);
+    if !rect.contains_rect(table) {
+        return; // the panel's tooltips name the keys too
+    }
+    painter.rect_filled(table, CornerRadius::same(4), Color32::from_black_alpha(80));
+    for (i, hint) in rows.iter().enumerate() {
+        let at = table.left_top() + vec2(10.0, 6.0 + height * i as f32);
+        painter.text(
+            at,
+            Align2::LEFT_TOP,
+            hint.keys,
+            font.clone(),
+            Color32::WHITE,
+        );
+        let at = at + vec2(118.0, 0.0);
+        painter.text(at, Align2::LEFT_TOP, hint.does, font.clone(), INK);
+    }
+}
+
+/// Words in lines no wider than `width`.
+fn wrap(painter: &egui::Painter, font: &FontId, words: &[String], width: f32) -> Vec<String> {
+    let measure = |text: &str| {
+        painter
+            .layout_no_wrap(text.to_owned(), font.clone(), INK)
+            .size()
+            .x
+    };
+    let mut lines: Vec<String> = vec![];
+    for word in words {
+        match lines.last_mut() {
+            Some(line) if measure(&format!("{line}    {word}")) <= width => {
+                *line += "    ";
+                *line += word;
+            }
+            _ => lines.push(word.clone()),
+        }
+    }
+    lines
+}
+
+/// What went wrong, what is awaited, what was done.
+pub(crate) fn messages(state: &mut AppState, ui: &Ui, rect: Rect) {
+    let painter = ui.painter_at(rect);
+    let now = ui.input(|input| input.time);
+    if let Some(why) = state.failure() {
+        let text = format!("{why}\n\nR restarts the scene, 1 to 9 choose another.");
+        card(&painter, rect, rect.center(), &text, colour::JELLY);
+    } else if state.shown().condition == Condition::Opening {
+        let text = format!("Opening {} …", state.scene);
+        card(
+            &painter,
+            rect,
+            rect.center_top() + vec2(0.0, 60.0),
+            &text,
+            INK,
+        );
+    }
+    if let Some((text, until)) = &state.notice {
+        if now < *until {
+            card(
+                &painter,
+                rect,
+                rect.center_top() + vec2(0.0, 60.0),
+                text,
+                INK,
+            );
+        } else {
+            state.notice = None;
+        }
+    } else if let Some(facts) = state.facts()
+        && state.shown().opened > 0
+        && state.readouts().time < 3.0
+        && !facts.warnings.is_empty()
+    {
+        let text = facts.warnings.join("\n");
+        card(
+            &painter,
+            rect,
+            rect.center_top() + vec2(0.0, 60.0),
+            &text,
+            INK,
+        );
+    }
+}
+
+/// Text on a dark card.
+fn card(painter: &egui::Painter, rect: Rect, centre: Pos2, text: &str, edge: Color32) {
+    let width = (rect.width() - 60.0).clamp(60.0, 760.0);
+    let text = painter.layout(
+        text.to_owned(),
+        FontId::proportional(15.0),
+        Color32::WHITE,
+        width,
+    );
+    let size = text.size() + Vec2::splat(28.0);
+    let mut frame = Rect::from_center_size(centre, size);
+    frame = frame.translate(vec2(0.0, (rect.top() + 6.0 - frame.top()).max(0.0)));
+    painter.rect_filled(frame, CornerRadius::same(6), Color32::from_black_alpha(215));
+    let outline = egui::epaint::RectShape::stroke(
+        frame,
+        CornerRadius::same(6),
+        Stroke::new(1.0, edge),
+        egui::StrokeKind::Inside,
+    );
+    painter.add(Shape::Rect(outline));
+    painter.galley(frame.min + Vec2::splat(14.0), text, Color32::WHITE);
+}

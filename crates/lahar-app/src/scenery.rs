@@ -1,0 +1,180 @@
+//! From snapshots to what is drawn: particles as sprites, the domain's edges, the floor's grid.
+
+use std::sync::Arc;
+
+use eframe::egui::Color32;
+use lahar::{Field, Snapshot};
+
+use crate::camera::{V3, add, against, corners, scale, sub};
+use crate::colour::{ColourBy, Range, colours};
+use crate::renderer::{Line, Sprite};
+use crate::scenes::Facts;
+
+/// Radius in parts of the spacing: discs that leave no holes between jittered particles.
+const RADIUS_2D: f32 = 0.95;
+/// Balls need less: those behind fill the gaps.
+const RADIUS_3D: f32 = 0.65;
+
+/// What stays where it is, and the measure of it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Scenery {
+    /// Corners of the domain, or of the particles with room to move in \[m\].
+    pub(crate) extent: (V3, V3),
+    /// What is drawn is drawn relative to it \[m\], lest f32 run out of digits.
+    pub(crate) origin: V3,
+    /// Edges and grid.
+    pub(crate) lines: Arc<Vec<Line>>,
+}
+
+impl Scenery {
+    pub(crate) fn new(facts: &Facts, snapshot: Option<&Snapshot>) -> Self {
+        let extent = extent(facts, snapshot);
+        let origin = scale(add(extent.0, extent.1), 0.5);
+        Self {
+            extent,
+            origin,
+            lines: Arc::new(outline(facts, extent, origin)),
+        }
+    }
+
+    /// Its smallest side \[m\].
+    pub(crate) fn smallest(&self, dimension: usize) -> f64 {
+        let size = sub(self.extent.1, self.extent.0);
+        (size[..dimension].iter()).fold(f64::INFINITY, |least, side| least.min(*side))
+    }
+}
+
+/// The radius that particles are drawn with at first, in parts of what sprites take for their spacing.
+pub(crate) fn usual_radius(facts: &Facts) -> f32 {
+    match (facts.angle.particle_radius, facts.dimension) {
+        (Some(_), _) => 1.0,
+        (None, 2) => RADIUS_2D,
+        (None, _) => RADIUS_3D,
+    }
+}
+
+/// The particles of one side.
+pub(crate) fn sprites(
+    snapshot: &Snapshot,
+    facts: &Facts,
+    scenery: &Scenery,
+    (by, palette, range): (ColourBy, &[Color32], &Range),
+) -> Vec<Sprite> {
+    let Some(positions) = snapshot.get(Field::Position).map(lahar::Data::to_f64) else {
+        return vec![];
+    };
+    let d = snapshot.dimension;
+    let spacings: Vec<f32> = match (facts.angle.particle_radius, snapshot.get(Field::Volume0)) {
+        (Some(radius), _) => vec![radius as f32; snapshot.count],
+        (None, Some(volumes)) => {
+            let spacing = |&volume: &f32| if d == 2 { volume.sqrt() } else { volume.cbrt() };
+            volumes.to_f32().iter().map(spacing).collect()
+        }
+        // A recording without volumes: what two particles along a cell's side would have.
+        (None, None) => vec![0.5 * facts.dx as f32; snapshot.count],
+    };
+    let colours = colours(by, snapshot, facts, palette, range);
+    (positions.chunks_exact(d).zip(spacings).zip(colours))
+        .map(|((x, spacing), colour)| {
+            let mut position = [0.0; 3];
+            for i in 0..d {
+                position[i] = (x[i] - scenery.origin[i]) as f32;
+            }
+            Sprite {
+                position,
+                spacing,
+                colour,
+            }
+        })
+        .collect()
+}
+
+/// The domain, or the box of the particles.
+fn extent(facts: &Facts, snapshot: Option<&Snapshot>) -> (V3, V3) {
+    if let Some((min, max)) = facts.domain {
+        return (min, max);
+    }
+    let d = facts.dimension;
+    let mut min = [f64::INFINITY; 3];
+    let mut max = [f64::NEG_INFINITY; 3];
+    let positions = snapshot
+        .and_then(|s| s.get(Field::Position))
+        .map(lahar::Data::to_f64)
+        .unwrap_or_default();
+    for x in positions.chunks_exact(d) {
+        for i in 0..d {
+            min[i] = min[i].min(x[i]);
+            max[i] = max[i].max(x[i]);
+        }
+    }
+    for i in 0..3 {
+        if i >= d {
+            (min[i], max[i]) = (0.0, 0.0);
+        } else if min[i] > max[i] {
+            (min[i], max[i]) = (0.0, 1.0);
+        } else {
+            // Room to move in.
+            let room = (0.5 * (max[i] - min[i])).max(4.0 * facts.dx);
+            (min[i], max[i]) = (min[i] - room, max[i] + room);
+        }
+    }
+    (min, max)
+}
+
+/// The domain's edges; in 3D, a grid on its floor too.
+fn outline(facts: &Facts, (min, max): (V3, V3), origin: V3) -> Vec<Line> {
+    let mut lines = vec![];
+    let mut line = |a: V3, b: V3, half_width: f32, opacity: u8| {
+        let local = |p: V3| sub(p, origin).map(|c| c as f32);
+        lines.push(Line {
+            start: local(a),
+            half_width,
+            end: local(b),
+            colour: [0xa9, 0xc7, 0xd6, opacity],
+        });
+    };
+    if facts.domain.is_some() {
+        let corners = corners(min, max);
+        for i in 0..8_usize {
+            for axis in 0..facts.dimension {
+                let j = i | 1 << axis;
+                if j != i && (facts.dimension == 3 || j < 4) {
+                    line(corners[i], corners[j], 0.7, 150);
+                }
+            }
+        }
+    }
+    if facts.dimension == 3 {
+        let up = against(facts.gravity);
+        let vertical = (0..3).find(|&i| up[i] != 0.0).unwrap_or(1);
+        let floor = if up[vertical] > 0.0 {
+            min[vertical]
+        } else {
+            max[vertical]
+        };
+        let (a, b) = ((vertical + 1) % 3, (vertical + 2) % 3);
+        let step = round_step((max[a] - min[a]).max(max[b] - min[b]) / 12.0);
+        for (along, across) in [(a, b), (b, a)] {
+            let mut k = (min[across] / step).ceil();
+            while k * step <= max[across] {
+                let mut start = [floor; 3];
+                start[across] = k * step;
+                let mut end = start;
+                (start[along], end[along]) = (min[along], max[along]);
+                line(start, end, 0.4, 60);
+                k += 1.0;
+            }
+        }
+    }
+    lines
+}
+
+/// 1, 2 or 5 times a power of ten, at least `least`.
+pub(crate) fn round_step(least: f64) -> f64 {
+    let power = 10_f64.powf(least.log10().floor());
+    [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|m| m * power)
+        .find(|&step| step >= least * (1.0 - 1e-9))
+        .unwrap_or(power)
+}

@@ -1,0 +1,292 @@
+//! The scenes that ship with lahar, scene files, and finished runs.
+//!
+//! What the window shows of a scene comes from the scene with its defaults filled in, as JSON: a run
+//! leaves the same in its run.json.
+
+use std::path::Path;
+
+use lahar::{Field, Isa};
+use lahar_io::builtin;
+use lahar_io::image::{Picture, Renderer, Scenery, Style};
+use lahar_io::output::Recording;
+use lahar_io::scene::{Controls, Scene};
+use serde_json::Value;
+
+use crate::colour::{ColourBy, palette};
+use crate::scenes::{
+    Angle, Changes, Facts, Footage, Look, SceneCard, SceneSource, Setting, SettingValue, Stage,
+    Swatch,
+};
+
+/// The scenes that ship with lahar, and scene files.
+#[derive(Clone, Debug)]
+pub struct Shelf {
+    /// The instruction set to run on.
+    pub isa: Isa,
+    /// Laid over every scene.
+    pub overrides: Changes,
+}
+
+impl Default for Shelf {
+    /// The widest instruction set of this machine, scenes as they are.
+    fn default() -> Self {
+        Self {
+            isa: Isa::detect(),
+            overrides: vec![],
+        }
+    }
+}
+
+impl SceneSource for Shelf {
+    fn list(&self) -> Vec<SceneCard> {
+        builtin::list()
+            .iter()
+            .map(|scene| SceneCard {
+                name: scene.name.to_owned(),
+                title: scene.title.to_owned(),
+                sentence: scene.summary.to_owned(),
+                dimension: scene.dimension,
+            })
+            .collect()
+    }
+
+    fn open(&self, name_or_path: &str, changes: &Changes) -> Result<Stage, String> {
+        let path = Path::new(name_or_path);
+        if builtin::find(name_or_path).is_none() && (path.is_dir() || path.ends_with("run.json")) {
+            return replay(path);
+        }
+        let changes = [self.overrides.as_slice(), changes].concat();
+        let scene = Scene::load(name_or_path, &changes).map_err(|e| e.render(false))?;
+        let built = scene.build(self.isa).map_err(|e| e.render(false))?;
+        let simulation = built.simulation;
+        let resolved = scene.resolved();
+        let (swatches, body_swatches) = swatches(&resolved);
+        let facts = Facts {
+            card: SceneCard {
+                name: name_or_path.to_owned(),
+                title: title(&resolved, &scene.name),
+                sentence: builtin::find(name_or_path)
+                    .map(|scene| scene.summary.to_owned())
+                    .unwrap_or_default(),
+                dimension: scene.dimension,
+            },
+            dimension: scene.dimension,
+            dx: simulation.dx(),
+            domain: simulation.domain(),
+            gravity: simulation.gravity(),
+            frame_rate: scene.frame_rate,
+            frames: None,
+            swatches,
+            body_swatches,
+            angle: angle(&resolved),
+            controls: scene.controls,
+            settings: settings(&resolved),
+            numbers: format!("{}, {}", simulation.precision(), simulation.isa().name()),
+            warnings: built.warnings,
+        };
+        Ok(Stage {
+            facts,
+            footage: Footage::Simulation(simulation),
+        })
+    }
+
+    fn thumbnail(&self, name: &str, [width, height]: [u32; 2]) -> Option<Picture> {
+        let Stage { facts, footage } = self.open(name, &vec![]).ok()?;
+        let Footage::Simulation(simulation) = footage else {
+            return None;
+        };
+        let mut scenery = Scenery::of(simulation.as_ref(), &[]);
+        scenery.colours = palette(&facts.swatches)
+            .iter()
+            .map(|colour| [colour.r(), colour.g(), colour.b()])
+            .collect();
+        scenery.background = (facts.angle.background).unwrap_or(scenery.background);
+        let style = Style {
+            width,
+            height,
+            ..Style::default()
+        };
+        let fields = [
+            Field::Position,
+            Field::Velocity,
+            Field::Material,
+            Field::Body,
+            Field::Volume0,
+        ];
+        Some(Renderer::new(scenery, style).render(&simulation.snapshot(&fields)))
+    }
+}
+
+/// A finished run, from its first frame.
+fn replay(folder: &Path) -> Result<Stage, String> {
+    let recording = Recording::open(folder).map_err(|error| error.to_string())?;
+    let record = recording.record();
+    let scene = &record.scene;
+    let (swatches, body_swatches) = swatches(scene);
+    let corner = |end: &str| vector(&scene["domain"][end]);
+    let facts = Facts {
+        card: SceneCard {
+            name: folder.display().to_string(),
+            title: title(scene, &record.scene_name),
+            sentence: format!("The run in {}.", recording.folder().display()),
+            dimension: record.dimension,
+        },
+        dimension: record.dimension,
+        dx: scene["dx"].as_f64().unwrap_or_default(),
+        domain: corner("min").zip(corner("max")),
+        gravity: vector(&scene["gravity"]).unwrap_or_default(),
+        frame_rate: (scene["computed"]["frame_rate"].as_f64()).unwrap_or(DEFAULT_FRAME_RATE),
+        frames: Some(recording.len()),
+        swatches,
+        body_swatches,
+        angle: angle(scene),
+        controls: Controls {
+            speed: scene["controls"]["speed"].as_f64().unwrap_or(1.0),
+            ..Controls::default()
+        },
+        settings: vec![],
+        numbers: format!("{}, {}", record.precision, record.isa),
+        warnings: record.warnings.clone(),
+    };
+    Ok(Stage {
+        facts,
+        footage: Footage::Recording(Box::new(recording)),
+    })
+}
+
+/// Of runs whose record does not say \[1/s\].
+const DEFAULT_FRAME_RATE: f64 = 60.0;
+
+fn title(scene: &Value, name: &str) -> String {
+    match scene["title"].as_str() {
+        Some(title) if !title.is_empty() => title.to_owned(),
+        _ => name.to_owned(),
+    }
+}
+
+/// Two or three numbers, the third 0 in 2D.
+fn vector(value: &Value) -> Option<[f64; 3]> {
+    let numbers: Option<Vec<f64>> = value.as_array()?.iter().map(Value::as_f64).collect();
+    match numbers?[..] {
+        [x, y] => Some([x, y, 0.0]),
+        [x, y, z] => Some([x, y, z]),
+        _ => None,
+    }
+}
+
+fn colour(value: &Value) -> Option<[u8; 3]> {
+    let digits = value.as_str()?.strip_prefix('#')?;
+    let [_, r, g, b] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
+    Some([r, g, b])
+}
+
+/// What the scene says of the camera; what it leaves open stays open.
+fn angle(scene: &Value) -> Angle {
+    let camera = &scene["camera"];
+    Angle {
+        center: vector(&camera["center"]),
+        height: camera["height"].as_f64(),
+        direction: vector(&camera["direction"]),
+        field_of_view: camera["field_of_view"].as_f64(),
+        particle_radius: camera["particle_radius"].as_f64(),
+        background: colour(&camera["background"]),
+        colour_by: match camera["color_by"].as_str() {
+            Some("speed") => ColourBy::Speed,
+            Some("pressure") => ColourBy::Pressure,
+            Some("density") => ColourBy::Density,
+            Some("J") => ColourBy::Jacobian,
+            _ => ColourBy::Material,
+        },
+    }
+}
+
+/// What of a scene is worth turning while one watches.
+fn settings(scene: &Value) -> Vec<Setting> {
+    const WORDS: [(&str, &[&str]); 3] = [
+        ("transfer", &["apic", "pic", "flip"]),
+        ("force", &["mls", "classic"]),
+        ("kernel", &["quadratic", "cubic", "linear"]),
+    ];
+    let mut settings = vec![];
+    let mut offer = |group: &str, path: &str, name: &str, value: Option<&Value>| {
+        let words = WORDS.iter().find(|(key, _)| *key == name);
+        let value = match (value, words) {
+            (Some(Value::Number(number)), None) => number.as_f64().map(SettingValue::Number),
+            (Some(Value::String(word)), Some((_, words))) => {
+                Some(SettingValue::Word(word.clone(), words))
+            }
+            _ => None,
+        };
+        settings.extend(value.map(|value| Setting {
+            key: format!("{path}{name}"),
+            group: group.to_owned(),
+            name: name.to_owned(),
+            value,
+        }));
+    };
+    for name in ["dx", "transfer", "flip_blend", "force", "kernel", "cfl"] {
+        offer("scene", "", name, scene.get(name));
+    }
+    for (material, table) in scene["materials"].as_object().into_iter().flatten() {
+        for (name, value) in table.as_object().into_iter().flatten() {
+            offer(
+                material,
+                &format!("materials.{material}."),
+                name,
+                Some(value),
+            );
+        }
+    }
+    for table in scene["bodies"].as_array().into_iter().flatten() {
+        if let Some(body) = table["name"].as_str() {
+            let name = "particles_per_cell";
+            offer(body, &format!("bodies.{body}."), name, table.get(name));
+        }
+    }
+    settings
+}
+
+/// The materials, then the bodies that have colours of their own; and which is whose.
+fn swatches(scene: &Value) -> (Vec<Swatch>, Vec<usize>) {
+    let empty = serde_json::Map::new();
+    let materials = scene["materials"].as_object().unwrap_or(&empty);
+    let look = |material: &str| match scene["materials"][material]["model"].as_str() {
+        Some("fluid") => Look::Liquid,
+        Some("corotated" | "neo_hookean") => Look::Jelly,
+        Some("snow") => Look::Snow,
+        Some("none") => Look::Dust,
+        _ => Look::Other,
+    };
+    let mut swatches: Vec<Swatch> = (materials.iter())
+        .map(|(name, table)| Swatch {
+            name: name.clone(),
+            look: look(name),
+            colour: colour(&table["color"]),
+        })
+        .collect();
+    let mut of_body = vec![];
+    for (number, body) in (scene["bodies"].as_array().into_iter().flatten()).enumerate() {
+        let material = body["material"].as_str().unwrap_or_default();
+        of_body.push(match colour(&body["color"]) {
+            None => (materials.keys())
+                .position(|name| name == material)
+                .unwrap_or(0),
+            Some(colour) => {
+                swatches.push(Swatch {
+                    name: (body["name"].as_str())
+                        .map_or_else(|| format!("body-{number}"), str::to_owned),
+                    look: look(material),
+                    colour: Some(colour),
+                });
+                swatches.len() - 1
+            }
+        });
+    }
+    // What no particle has needs no place in the legend.
+    let used: Vec<usize> = (0..swatches.len())
+        .filter(|i| of_body.contains(i))
+        .collect();
+    let place = |i: &usize| used.iter().position(|u| u == i).unwrap_or(0);
+    let of_body = of_body.iter().map(place).collect();
+    (used.iter().map(|&i| swatches[i].clone()).collect(), of_body)
+}

@@ -1,0 +1,91 @@
+//! The window without a window: keys, clicks and drags in, orders out; and the solver behind it.
+//! Nothing here needs a display. What needs a graphics adapter is left out where there is none.
+
+mod compare;
+mod drawn;
+mod keys;
+mod mouse;
+mod panel;
+mod replay;
+mod solver;
+mod support;
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use eframe::egui::Vec2;
+use egui_kittest::Harness;
+use lahar_app::app_state::{AppState, Effect};
+use lahar_app::scenes::SceneSource;
+use lahar_app::solver::{Order, Readouts, Shown, Solver, Wanted};
+use lahar_app::{DEFAULT_SCENE, view};
+
+/// A scene alone and as it is.
+fn alone(scene: &str) -> Wanted {
+    Wanted {
+        scene: scene.into(),
+        ..Wanted::default()
+    }
+}
+
+fn open(scene: &str) -> Order {
+    Order::Open(alone(scene))
+}
+
+/// Numbers of the first side.
+fn first(shown: &Shown) -> Readouts {
+    shown
+        .sides
+        .first()
+        .map_or_else(Readouts::default, |side| side.readouts)
+}
+
+/// What the solver would show of a scene at its start.
+fn shown(name: &str, opened: u64) -> Shown {
+    let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
+    solver.order(Order::Pause(true));
+    solver.order(open(name));
+    let mut shown = wait(&mut solver, |shown| shown.opened > 0);
+    shown.opened = opened;
+    shown
+}
+
+/// The newest state that satisfies `until`.
+fn wait(solver: &mut Solver, until: impl Fn(&Shown) -> bool) -> Shown {
+    let start = Instant::now();
+    loop {
+        if let Some(shown) = solver.newest().filter(&until) {
+            return shown;
+        }
+        assert!(
+            start.elapsed() < Duration::from_secs(60),
+            "the solver does not answer"
+        );
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+fn harness(scene: &str) -> Harness<'static, AppState> {
+    harness_of(shown(scene, 1))
+}
+
+fn harness_of(shown: Shown) -> Harness<'static, AppState> {
+    let scene = shown.facts.as_ref().unwrap().card.name.clone();
+    let mut state = AppState::new(support::Blocks.list(), DEFAULT_SCENE, Some(alone(&scene)));
+    state.receive(shown);
+    state.take_effects();
+    let mut harness = Harness::builder()
+        .with_size(Vec2::new(1100.0, 720.0))
+        .build_ui_state(|ui, state: &mut AppState| view::window(state, ui), state);
+    harness.run();
+    harness
+}
+
+fn orders(harness: &mut Harness<'_, AppState>) -> Vec<Order> {
+    let effects = harness.state_mut().take_effects();
+    let order = |effect| match effect {
+        Effect::Order(order) => Some(order),
+        Effect::Screenshot | Effect::Thumbnails | Effect::Close => None,
+    };
+    effects.into_iter().filter_map(order).collect()
+}

@@ -1,0 +1,190 @@
+//! Scenes made by hand, so that the window's tests need no files.
+
+use lahar::material::{Eos, Fluid, JacobianUpdate};
+use lahar::{
+    Contact, Domain, Isa, Material, Model, ParticleBatch, Setup, Sides, Simulate, Simulation,
+    Transfer, WallStyle,
+};
+use lahar_app::scenes::{
+    Angle, Changes, Facts, Footage, Look, SceneCard, SceneSource, Setting, SettingValue, Stage,
+    Swatch,
+};
+use lahar_io::scene::Controls;
+
+/// Two blocks of water in 2D, one in 3D, and a scene that cannot be opened.
+pub(crate) struct Blocks;
+
+impl SceneSource for Blocks {
+    fn list(&self) -> Vec<SceneCard> {
+        [
+            ("dam-break", "Dam break", 2),
+            ("double-dam", "Double dam", 2),
+            ("dam-break-3d", "Dam break in 3D", 3),
+            ("broken", "Broken", 2),
+            ("held", "Gravity while a key is held", 2),
+        ]
+        .map(|(name, title, dimension)| SceneCard {
+            name: name.into(),
+            title: title.into(),
+            sentence: format!("A block of water falls in {dimension}D."),
+            dimension,
+        })
+        .to_vec()
+    }
+
+    fn open(&self, name: &str, changes: &Changes) -> Result<Stage, String> {
+        let card = self.list().into_iter().find(|card| card.name == name);
+        let card = card.ok_or_else(|| format!("no scene \"{name}\""))?;
+        let mut water = Water::default();
+        for (key, value) in changes {
+            water.change(key, value.trim_matches('"'))?;
+        }
+        let simulation: Box<dyn Simulate> = match name {
+            "broken" => return Err("line 3: gravity: expected numbers".into()),
+            "double-dam" => Box::new(blocks::<2>(&[[0.1, 0.1], [1.4, 0.1]], 0.5, water)?),
+            "dam-break-3d" => Box::new(blocks::<3>(&[[0.2, 0.2, 0.2]], 0.6, water)?),
+            _ => Box::new(blocks::<2>(&[[0.1, 0.3]], 0.8, water)?),
+        };
+        let setting = |key: &str, group: &str, value| Setting {
+            key: key.into(),
+            group: group.into(),
+            name: key.rsplit('.').next().unwrap_or(key).into(),
+            value,
+        };
+        let facts = Facts {
+            dimension: simulation.dimension(),
+            dx: simulation.dx(),
+            domain: simulation.domain(),
+            gravity: simulation.gravity(),
+            frame_rate: 60.0,
+            frames: None,
+            swatches: vec![Swatch {
+                name: "water".into(),
+                look: Look::Liquid,
+                colour: None,
+            }],
+            body_swatches: vec![0],
+            angle: Angle::default(),
+            controls: if name == "held" {
+                Controls {
+                    speed: 0.5,
+                    gravity: Some(30.0),
+                    hold: true,
+                    pull: Some(100.0),
+                    reach: Some(f64::INFINITY),
+                }
+            } else {
+                Controls::default()
+            },
+            settings: vec![
+                setting(
+                    "materials.water.viscosity",
+                    "water",
+                    SettingValue::Number(water.viscosity),
+                ),
+                setting(
+                    "transfer",
+                    "scene",
+                    SettingValue::Word(water.transfer_name().into(), &["apic", "pic"]),
+                ),
+            ],
+            numbers: "f32".into(),
+            warnings: vec![],
+            card,
+        };
+        Ok(Stage {
+            facts,
+            footage: Footage::Simulation(simulation),
+        })
+    }
+}
+
+/// What can be changed about the blocks.
+#[derive(Clone, Copy)]
+struct Water {
+    viscosity: f64,
+    transfer: Transfer,
+}
+
+impl Default for Water {
+    fn default() -> Self {
+        Self {
+            viscosity: 1.0e-3,
+            transfer: Transfer::Apic,
+        }
+    }
+}
+
+impl Water {
+    fn transfer_name(self) -> &'static str {
+        if self.transfer == Transfer::Pic {
+            "pic"
+        } else {
+            "apic"
+        }
+    }
+
+    fn change(&mut self, key: &str, value: &str) -> Result<(), String> {
+        match (key, value) {
+            ("materials.water.viscosity", number) => {
+                self.viscosity = number.parse().map_err(|_| format!("{key}: {number}"))?;
+            }
+            ("transfer", "apic") => self.transfer = Transfer::Apic,
+            ("transfer", "pic") => self.transfer = Transfer::Pic,
+            _ => return Err(format!("{key} cannot be {value}")),
+        }
+        Ok(())
+    }
+}
+
+fn blocks<const D: usize>(
+    corners: &[[f64; D]],
+    edge: f64,
+    changed: Water,
+) -> Result<Simulation<f32, D>, String>
+where
+    f32: lahar::Instance<D>,
+{
+    let dx = if D == 2 { 0.02 } else { 0.05 };
+    let water = Material {
+        name: "water".into(),
+        density: 1000.0,
+        model: Model::Fluid(Fluid {
+            eos: Eos::Tait { gamma: 7.0 },
+            bulk_modulus: 1.0e5,
+            viscosity: changed.viscosity,
+            bulk_viscosity: 0.0,
+            tension: 0.0,
+            jacobian_update: JacobianUpdate::Trace,
+        }),
+    };
+    let mut setup = Setup::<D>::new(dx, vec![water]);
+    setup.isa = Isa::Portable;
+    setup.transfer = changed.transfer;
+    setup.gravity[1] = -9.81;
+    let wall = Contact::Separate { friction: 0.0 };
+    setup.domain = Some(Domain {
+        min: [0.0; D],
+        max: core::array::from_fn(|axis| if axis == 0 { 2.0 } else { 1.2 }),
+        sides: [Sides::Walls {
+            low: wall,
+            high: wall,
+        }; D],
+        style: WallStyle::Plane,
+    });
+    let spacing = 0.5 * dx;
+    let along = (edge / spacing).round() as usize;
+    let mut batch = ParticleBatch::<D> {
+        volume: vec![spacing.powi(D as i32)],
+        ..ParticleBatch::default()
+    };
+    for corner in corners {
+        for i in 0..along.pow(D as u32) {
+            batch.position.push(core::array::from_fn(|axis| {
+                let k = i / along.pow(axis as u32) % along;
+                corner[axis] + (k as f64 + 0.5) * spacing
+            }));
+        }
+    }
+    Simulation::new(setup, &[batch]).map_err(|error| error.to_string())
+}
