@@ -131,7 +131,8 @@ impl AppState {
             held: None,
             show_scenes: false,
             thumbnails: HashMap::new(),
-            show_hints: true,
+            // They would lie over one of the sides.
+            show_hints: wanted.comparison.is_none(),
             show_panel: true,
             camera: None,
             notice: None,
@@ -299,7 +300,6 @@ impl AppState {
     /// Runs the scene with several values of a key side by side, or alone again.
     pub fn compare(&mut self, comparison: Option<Comparison>) {
         self.comparison = comparison;
-        // They would lie over one of the sides.
         self.show_hints &= self.comparison.is_none();
         self.refit = true;
         self.reopen();

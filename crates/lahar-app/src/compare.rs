@@ -4,9 +4,6 @@ use lahar_io::scene::Comparison;
 
 use crate::scenes::{Setting, SettingValue};
 
-/// More would be too small to see.
-pub const MOST_SIDES: usize = 4;
-
 /// A comparison being put together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Draft {
@@ -48,7 +45,7 @@ impl Draft {
         if let Some(last) = self
             .values
             .last()
-            .filter(|_| self.values.len() < MOST_SIDES)
+            .filter(|_| self.values.len() < Comparison::MOST)
         {
             self.values.push(last.another());
         }
@@ -115,7 +112,7 @@ mod tests {
         draft.add();
         draft.add();
         draft.add();
-        assert_eq!(draft.values.len(), MOST_SIDES);
+        assert_eq!(draft.values.len(), Comparison::MOST);
         // The fourth word is the first again.
         assert_eq!(draft.comparison().unwrap().values.len(), 3);
     }

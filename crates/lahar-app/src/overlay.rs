@@ -209,7 +209,8 @@ pub(crate) fn hints(state: &AppState, ui: &Ui, rect: Rect) {
     }
 
     let size = vec2(400.0, height * rows.len() as f32 + 12.0);
-    let table = Rect::from_min_size(rect.right_top() + vec2(-size.x - 10.0, 10.0), size);
+    let top = if shows_numbers(state) { 58.0 } else { 10.0 };
+    let table = Rect::from_min_size(rect.right_top() + vec2(-size.x - 10.0, top), size);
     if !rect.contains_rect(table) {
         return; // the panel's tooltips name the keys too
     }

@@ -4,10 +4,10 @@ use eframe::egui::{self, DragValue, RichText, Slider, Ui};
 
 use crate::app_state::{AppState, SPEEDS};
 use crate::colour::ColourBy;
-use crate::compare::MOST_SIDES;
 use crate::controls::{Action, Direction};
 use crate::scenes::{Setting, SettingValue};
 use crate::solver::Condition;
+use lahar_io::scene::Comparison;
 
 /// The whole panel.
 pub fn panel(state: &mut AppState, ui: &mut Ui) {
@@ -168,7 +168,7 @@ fn compare(state: &mut AppState, ui: &mut Ui) {
         {
             state.compare(None);
         }
-        let room = (2..MOST_SIDES).contains(&state.draft.values.len());
+        let room = (2..Comparison::MOST).contains(&state.draft.values.len());
         if ui
             .add_enabled(room, egui::Button::new("One more"))
             .clicked()

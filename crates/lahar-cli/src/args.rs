@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 use lahar::Isa;
+use lahar_io::scene::Comparison;
 
 /// Fluids, and the solids they meet, simulated by the Moving Least Squares Material Point Method.
 ///
@@ -48,9 +49,25 @@ pub(crate) enum Command {
 /// Options of `view`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct View {
-    /// A built-in scene's name, a scene file, or a run's folder
+    /// A built-in scene's name, a scene file, or a run's folder, which is replayed
     #[arg(value_name = "SCENE|RUN")]
     pub(crate) what: String,
+
+    /// Set a key of the scene, as in `--set gravity=[0,-1.62]` or `--set bodies.column.velocity=[1,0]`
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
+
+    /// Run the scene with several values of a key, side by side, as in `--compare transfer=pic,apic`
+    #[arg(long, value_name = "KEY=A,B")]
+    pub(crate) compare: Option<Comparison>,
+
+    /// The instruction set to compute with; the widest of this machine if not given
+    #[arg(long, value_name = "SET", value_parser = isa)]
+    pub(crate) isa: Option<Isa>,
+
+    /// Threads to compute with; all of this machine if not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
 }
 
 /// The scene and what is laid over it.

@@ -50,8 +50,8 @@ fn main() -> ExitCode {
 
 fn execute(args: Args) -> Result<ExitCode, CliError> {
     match args.command {
-        None => window::open_or_run(None),
-        Some(Command::View(view)) => window::open(Some(&view.what)),
+        None => window::open_or_run(),
+        Some(Command::View(view)) => window::open(view),
         Some(Command::Run(run)) => run::run(plan::Plan::from_args(&run)?, run.json),
         Some(Command::List(list)) => list::list(list.json),
         Some(Command::Show(show)) => show::show(&show),

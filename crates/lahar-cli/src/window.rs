@@ -1,7 +1,13 @@
 //! The window where there is one, and what happens where there is none.
 
+use std::path::Path;
 use std::process::ExitCode;
 
+use lahar_io::builtin;
+use lahar_io::output::Recording;
+use lahar_io::scene::{Comparison, Scene};
+
+use crate::args::View;
 use crate::error::CliError;
 use crate::plan::Plan;
 use crate::{run, terminal};
@@ -13,22 +19,30 @@ const DEFAULT_SCENE: &str = "dam-break";
 const DEADLINE: f64 = 45.0;
 
 /// `lahar`: the window, or the same scene without.
-pub(crate) fn open_or_run(scene: Option<&str>) -> Result<ExitCode, CliError> {
-    match open_window(scene) {
+pub(crate) fn open_or_run() -> Result<ExitCode, CliError> {
+    match open_window(None) {
         Ok(()) => Ok(ExitCode::SUCCESS),
         Err(why) => {
-            let scene = scene.unwrap_or(DEFAULT_SCENE);
             terminal::note(&format!(
-                "no window ({why}): running the scene \"{scene}\" without one, in under a minute, into out/"
+                "no window ({why}): running the scene \"{DEFAULT_SCENE}\" without one, in under a minute, into out/"
             ));
-            run::run(Plan::demonstration(scene, DEADLINE)?, false)
+            run::run(Plan::demonstration(DEFAULT_SCENE, DEADLINE)?, false)
         }
     }
 }
 
 /// `lahar view`.
-pub(crate) fn open(what: Option<&str>) -> Result<ExitCode, CliError> {
-    match open_window(what) {
+pub(crate) fn open(view: View) -> Result<ExitCode, CliError> {
+    check(&view)?;
+    if let Some(threads) = view.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(usize::from(threads))
+            .build_global()
+            .map_err(|error| {
+                CliError::Machine(format!("cannot start {threads} threads: {error}"))
+            })?;
+    }
+    match open_window(Some(view)) {
         Ok(()) => Ok(ExitCode::SUCCESS),
         Err(why) => Err(CliError::Machine(format!(
             "no window: {why}; `lahar run` needs none"
@@ -36,13 +50,45 @@ pub(crate) fn open(what: Option<&str>) -> Result<ExitCode, CliError> {
     }
 }
 
+/// What is wrong with the scene or the run is found before anything opens.
+fn check(view: &View) -> Result<(), CliError> {
+    let path = Path::new(&view.what);
+    if builtin::find(&view.what).is_none() && (path.is_dir() || path.ends_with("run.json")) {
+        if view.compare.is_some() || !view.set.is_empty() {
+            return Err(CliError::Usage(format!(
+                "{} is a finished run: --set and --compare need its scene",
+                path.display()
+            )));
+        }
+        let recording =
+            Recording::open(path).map_err(|error| CliError::Usage(error.to_string()))?;
+        return (recording.frame(0).map(drop)).map_err(|error| CliError::Usage(error.to_string()));
+    }
+    let Some(comparison) = &view.compare else {
+        return Ok(Scene::load(&view.what, &view.set).map(drop)?);
+    };
+    if comparison.values.len() > Comparison::MOST {
+        return Err(CliError::Usage(format!(
+            "--compare {comparison}: at most {} fit side by side",
+            Comparison::MOST
+        )));
+    }
+    for overrides in comparison.overrides(&view.set) {
+        Scene::load(&view.what, &overrides)?;
+    }
+    Ok(())
+}
+
 /// Opens the window and returns when it is closed, or says why there is none.
 #[cfg(feature = "window")]
-fn open_window(scene: Option<&str>) -> Result<(), String> {
-    let options = lahar_app::Options {
-        scene: scene.map(str::to_owned),
-        ..lahar_app::Options::default()
-    };
+fn open_window(view: Option<View>) -> Result<(), String> {
+    let mut options = lahar_app::Options::default();
+    if let Some(view) = view {
+        options.scene = Some(view.what);
+        options.overrides = view.set;
+        options.comparison = view.compare;
+        options.isa = view.isa.unwrap_or(options.isa);
+    }
     if lahar_app::check_display().is_ok() {
         terminal::note(&lahar_app::key_help());
     }
@@ -51,6 +97,6 @@ fn open_window(scene: Option<&str>) -> Result<(), String> {
 
 /// Says why there is no window.
 #[cfg(not(feature = "window"))]
-fn open_window(_scene: Option<&str>) -> Result<(), String> {
+fn open_window(_view: Option<View>) -> Result<(), String> {
     Err("this program was built without".to_owned())
 }

@@ -13,6 +13,9 @@ pub struct Comparison {
 }
 
 impl Comparison {
+    /// More values than this would be too small to see beside each other.
+    pub const MOST: usize = 4;
+
     /// What is laid over the scene for each of the values: `base`, and then the key.
     pub fn overrides<'a>(
         &'a self,
