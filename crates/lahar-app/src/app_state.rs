@@ -197,14 +197,6 @@ impl AppState {
         }
     }
 
-    /// Whether new pictures are to be expected without anybody doing anything.
-    pub fn is_moving(&self) -> bool {
-        matches!(
-            self.shown.condition,
-            Condition::Running | Condition::Opening
-        )
-    }
-
     /// Does what a key or a button asks for.
     pub fn act(&mut self, action: Action) {
         match action {

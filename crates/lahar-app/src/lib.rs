@@ -17,6 +17,7 @@ pub mod colour;
 pub mod compare;
 pub mod controls;
 pub mod hand;
+mod meter;
 mod overlay;
 pub mod panel;
 pub mod renderer;
@@ -33,6 +34,7 @@ use std::fmt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Instant;
 
 use eframe::egui;
 use eframe::egui_wgpu::{WgpuSetup, WgpuSetupCreateNew, wgpu};
@@ -41,6 +43,7 @@ use app_state::AppState;
 pub use controls::key_help;
 use lahar::Isa;
 use lahar_io::scene::Comparison;
+use meter::Meter;
 use scenes::SceneSource;
 use shelf::Shelf;
 use solver::{Solver, Wanted};
@@ -62,6 +65,10 @@ pub struct Options {
     pub size: [f32; 2],
     /// Where F12 puts its pictures.
     pub screenshots: PathBuf,
+    /// Threads to compute with; 0: as many as the machine has.
+    pub threads: usize,
+    /// Is told how fast it goes, a line a second.
+    pub say: Option<fn(&str)>,
 }
 
 impl Default for Options {
@@ -74,6 +81,8 @@ impl Default for Options {
             isa: Isa::detect(),
             size: [1180.0, 720.0],
             screenshots: PathBuf::from("."),
+            threads: 0,
+            say: None,
         }
     }
 }
@@ -124,6 +133,7 @@ pub fn run(options: Options) -> Result<(), AppError> {
 /// There is no display, no adapter, or the window did not open. A scene that cannot be opened is no
 /// error: the window shows what is wrong.
 pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), AppError> {
+    let start = Instant::now();
     check_display()?;
     let adapter_setup = WgpuSetupCreateNew::without_display_handle();
     check_adapter(&adapter_setup.instance_descriptor)?;
@@ -134,8 +144,9 @@ pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), Ap
         ..Wanted::default()
     };
     let state = AppState::new(source.list(), DEFAULT_SCENE, Some(wanted));
-    let solver = Solver::start(Arc::clone(&source))
-        .map_err(|error| AppError::Window(format!("no thread for the solver: {error}")))?;
+    let solver = Solver::start(Arc::clone(&source), options.threads)
+        .map_err(|error| AppError::Window(format!("no threads for the solver: {error}")))?;
+    let meter = options.say.map(|say| Meter::new(say, start));
     let mut native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("lahar")
@@ -157,6 +168,7 @@ pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), Ap
                     solver,
                     source,
                     options.screenshots,
+                    meter,
                 )))
             }),
         )

@@ -9,6 +9,7 @@ use eframe::egui::{self, ColorImage};
 use lahar_io::image::Picture;
 
 use crate::app_state::{AppState, Effect};
+use crate::meter::Meter;
 use crate::scenes::SceneSource;
 use crate::solver::Solver;
 use crate::{colour, renderer, screenshot, view};
@@ -21,6 +22,7 @@ pub(crate) struct Window {
     pictures: (Sender<Arc<ColorImage>>, Receiver<Arc<ColorImage>>),
     source: Arc<dyn SceneSource>,
     thumbnails: Option<Receiver<(String, Picture)>>,
+    meter: Option<Meter>,
 }
 
 impl Window {
@@ -30,7 +32,10 @@ impl Window {
         solver: Solver,
         source: Arc<dyn SceneSource>,
         screenshots: PathBuf,
+        meter: Option<Meter>,
     ) -> Self {
+        let repaint = context.egui_ctx.clone();
+        solver.on_news(move || repaint.request_repaint());
         if let Some(render_state) = &context.wgpu_render_state {
             renderer::install(render_state);
         }
@@ -42,6 +47,7 @@ impl Window {
             pictures: channel(),
             source,
             thumbnails: None,
+            meter,
         }
     }
 
@@ -50,7 +56,7 @@ impl Window {
             match effect {
                 Effect::Order(order) => self.solver.order(order),
                 Effect::Close => context.send_viewport_cmd(egui::ViewportCommand::Close),
-                Effect::Thumbnails => self.draw_thumbnails(),
+                Effect::Thumbnails => self.draw_thumbnails(context),
                 Effect::Screenshot => {
                     let pictures = self.pictures.0.clone();
                     let repaint = context.clone();
@@ -65,15 +71,17 @@ impl Window {
     }
 
     /// One scene after the other, on a thread of their own: they have to be built to be drawn.
-    fn draw_thumbnails(&mut self) {
+    fn draw_thumbnails(&mut self, context: &egui::Context) {
+        let repaint = context.clone();
         let (sender, receiver) = channel();
         let source = Arc::clone(&self.source);
         let draw = move || {
             for card in source.list() {
-                if let Some(picture) = source.thumbnail(&card.name, THUMBNAIL_PIXELS)
-                    && sender.send((card.name, picture)).is_err()
-                {
-                    return;
+                if let Some(picture) = source.thumbnail(&card.name, THUMBNAIL_PIXELS) {
+                    if sender.send((card.name, picture)).is_err() {
+                        return;
+                    }
+                    repaint.request_repaint();
                 }
             }
         };
@@ -91,6 +99,9 @@ impl Window {
         }
     }
 }
+
+/// Drawn at least this often.
+const IDLE: Duration = Duration::from_millis(100);
 
 /// Largest small picture: two pixels a point.
 const THUMBNAIL_PIXELS: [u32; 2] = [224, 128];
@@ -112,12 +123,12 @@ impl eframe::App for Window {
         self.take_thumbnails(&context);
         view::window(&mut self.state, ui);
         self.carry_out(&context);
-        // Moving: as fast as the display goes. Standing: often enough to see what a key did.
-        if self.state.is_moving() {
-            context.request_repaint();
-        } else {
-            context.request_repaint_after(Duration::from_millis(50));
+        if let Some(meter) = &mut self.meter {
+            meter.drawn(self.state.sides());
         }
+        // The solver asks for pictures when it has something new; the rest is for what passes by
+        // itself: a notice, a hand that stopped.
+        context.request_repaint_after(IDLE);
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {

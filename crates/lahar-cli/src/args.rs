@@ -68,6 +68,10 @@ pub(crate) struct View {
     /// Threads to compute with; all of this machine if not given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+
+    /// Print a line a second on standard error: how fast it computes and draws
+    #[arg(long)]
+    pub(crate) trace: bool,
 }
 
 /// The scene and what is laid over it.

@@ -34,14 +34,6 @@ pub(crate) fn open_or_run() -> Result<ExitCode, CliError> {
 /// `lahar view`.
 pub(crate) fn open(view: View) -> Result<ExitCode, CliError> {
     check(&view)?;
-    if let Some(threads) = view.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(usize::from(threads))
-            .build_global()
-            .map_err(|error| {
-                CliError::Machine(format!("cannot start {threads} threads: {error}"))
-            })?;
-    }
     match open_window(Some(view)) {
         Ok(()) => Ok(ExitCode::SUCCESS),
         Err(why) => Err(CliError::Machine(format!(
@@ -88,6 +80,8 @@ fn open_window(view: Option<View>) -> Result<(), String> {
         options.overrides = view.set;
         options.comparison = view.compare;
         options.isa = view.isa.unwrap_or(options.isa);
+        options.threads = view.threads.map_or(options.threads, usize::from);
+        options.say = view.trace.then_some(terminal::note);
     }
     if lahar_app::check_display().is_ok() {
         terminal::note(&lahar_app::key_help());

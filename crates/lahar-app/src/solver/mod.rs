@@ -14,9 +14,8 @@ mod live;
 mod replay;
 mod worker;
 
-use std::sync::Arc;
 use std::sync::mpsc::{Sender, channel};
-use std::thread;
+use std::sync::{Arc, OnceLock};
 
 use lahar::{Command, DtLimit, Field, Snapshot};
 use lahar_io::scene::Comparison;
@@ -125,24 +124,43 @@ pub struct Shown {
     pub condition: Condition,
 }
 
+/// What is called after each publication, from the solver's thread.
+type News = Arc<OnceLock<Box<dyn Fn() + Send + Sync>>>;
+
 /// The window's end of the solver. Dropping it ends the thread after the substep at hand.
 pub struct Solver {
     orders: Sender<Order>,
     shown: Output<Shown>,
+    news: News,
 }
 
 impl Solver {
-    /// Starts the thread; nothing runs until [`Order::Open`].
+    /// Starts so many threads, 0 for as many as the machine has; nothing runs until [`Order::Open`].
     ///
     /// # Errors
-    /// The system refuses a thread.
-    pub fn start(source: Arc<dyn SceneSource>) -> std::io::Result<Self> {
+    /// The system refuses threads.
+    pub fn start(source: Arc<dyn SceneSource>, threads: usize) -> Result<Self, String> {
         let (orders, inbox) = channel();
         let (input, shown) = TripleBuffer::new(&Shown::default()).split();
-        thread::Builder::new()
-            .name("lahar solver".into())
-            .spawn(move || Worker::new(source, input).run(&inbox))?;
-        Ok(Self { orders, shown })
+        let news = News::default();
+        let worker = Worker::new(source, input, Arc::clone(&news));
+        // The worker is one of the pool's threads: what it divides among them needs no waking.
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .thread_name(|index| format!("lahar-solver-{index}"))
+            .build()
+            .map_err(|error| error.to_string())?;
+        pool.spawn(move || worker.run(&inbox));
+        Ok(Self {
+            orders,
+            shown,
+            news,
+        })
+    }
+
+    /// Calls `tell` whenever there is something newer to show; a second `tell` is not taken.
+    pub fn on_news(&self, tell: impl Fn() + Send + Sync + 'static) {
+        self.news.get_or_init(|| Box::new(tell));
     }
 
     /// Sends an order; never waits.

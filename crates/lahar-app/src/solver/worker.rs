@@ -11,7 +11,7 @@ use triple_buffer::Input;
 use super::clock::{Clock, Rate};
 use super::live::Live;
 use super::replay::Replay;
-use super::{ALWAYS, Condition, Order, Shown, Wanted, mistake};
+use super::{ALWAYS, Condition, News, Order, Shown, Wanted, mistake};
 use crate::scenes::{Footage, SceneSource, Stage};
 
 /// Snapshots are not taken more often than this, unless the window waits for one.
@@ -30,6 +30,7 @@ enum Play {
 pub(super) struct Worker {
     source: Arc<dyn SceneSource>,
     output: Input<Shown>,
+    news: News,
     shown: Shown,
     wanted: Option<Wanted>,
     play: Play,
@@ -48,10 +49,11 @@ pub(super) struct Worker {
 struct Gone;
 
 impl Worker {
-    pub(super) fn new(source: Arc<dyn SceneSource>, output: Input<Shown>) -> Self {
+    pub(super) fn new(source: Arc<dyn SceneSource>, output: Input<Shown>, news: News) -> Self {
         Self {
             source,
             output,
+            news,
             shown: Shown::default(),
             wanted: None,
             play: Play::Nothing,
@@ -309,6 +311,9 @@ impl Worker {
         }
         self.shown.number += 1;
         self.output.write(self.shown.clone());
+        if let Some(tell) = self.news.get() {
+            tell();
+        }
         self.published = Instant::now();
         self.changed = false;
     }

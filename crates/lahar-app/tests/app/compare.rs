@@ -58,7 +58,7 @@ fn the_panel_compares_numbers_too() {
 
 #[test]
 fn sides_run_in_step_each_as_it_would_alone() {
-    let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
+    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
     solver.order(Order::Fields(vec![Field::Velocity]));
     solver.order(Order::Open(compared("dam-break")));
     let shown = wait(&mut solver, |shown| {
@@ -77,7 +77,7 @@ fn sides_run_in_step_each_as_it_would_alone() {
     );
 
     // One of them alone, to the same frame.
-    let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
+    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
     solver.order(Order::Fields(vec![Field::Velocity]));
     solver.order(Order::Open(Wanted {
         changes: vec![("transfer".into(), "pic".into())],
@@ -98,7 +98,7 @@ fn sides_run_in_step_each_as_it_would_alone() {
 
 #[test]
 fn a_substep_keeps_the_sides_together() {
-    let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
+    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
     solver.order(Order::Pause(true));
     solver.order(Order::Open(compared("dam-break")));
     for _ in 0..3 {
@@ -111,7 +111,7 @@ fn a_substep_keeps_the_sides_together() {
 
 #[test]
 fn what_goes_wrong_on_a_side_is_said_with_its_title() {
-    let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
+    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
     solver.order(Order::Open(Wanted {
         comparison: Some("transfer=apic,magic".parse().unwrap()),
         ..alone("dam-break")

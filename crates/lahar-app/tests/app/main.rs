@@ -42,7 +42,7 @@ fn first(shown: &Shown) -> Readouts {
 
 /// What the solver would show of a scene at its start.
 fn shown(name: &str, opened: u64) -> Shown {
-    let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
+    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
     solver.order(Order::Pause(true));
     solver.order(open(name));
     let mut shown = wait(&mut solver, |shown| shown.opened > 0);

@@ -65,7 +65,7 @@ fn record(folder: &std::path::Path, frames: u64) {
 }
 
 fn solver(folder: &std::path::Path, paused: bool) -> Solver {
-    let solver = Solver::start(Arc::new(Shelf::default())).unwrap();
+    let solver = Solver::start(Arc::new(Shelf::default()), 1).unwrap();
     solver.order(Order::Pause(paused));
     solver.order(open(&folder.display().to_string()));
     solver

@@ -17,7 +17,7 @@ fn simulation(source: &dyn SceneSource, scene: &str) -> Box<dyn lahar::Simulate>
 #[test]
 fn a_scene_left_alone_has_the_same_bits_as_a_headless_run() {
     let mut headless = simulation(&support::Blocks, "dam-break");
-    let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
+    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
     solver.order(Order::Fields(vec![Field::Velocity]));
     solver.order(Order::Speed(8.0));
     solver.order(open("dam-break"));
@@ -47,7 +47,7 @@ fn a_scene_left_alone_has_the_same_bits_as_a_headless_run() {
 
 #[test]
 fn pause_stops_the_clock_and_a_substep_is_one_substep() {
-    let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
+    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
     solver.order(Order::Pause(true));
     solver.order(open("dam-break"));
     let start = wait(&mut solver, |shown| shown.condition == Condition::Paused);
@@ -66,7 +66,7 @@ fn pause_stops_the_clock_and_a_substep_is_one_substep() {
 
 #[test]
 fn never_faster_than_real_time_times_speed() {
-    let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
+    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
     solver.order(Order::Speed(0.1));
     solver.order(open("dam-break"));
     wait(&mut solver, |shown| shown.condition == Condition::Running);
@@ -83,7 +83,7 @@ fn never_faster_than_real_time_times_speed() {
 
 #[test]
 fn a_scene_that_cannot_be_opened_is_said_and_the_next_one_opens() {
-    let mut solver = Solver::start(Arc::new(support::Blocks)).unwrap();
+    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
     solver.order(open("broken"));
     let shown = wait(&mut solver, |shown| {
         matches!(shown.condition, Condition::Failed(_))
