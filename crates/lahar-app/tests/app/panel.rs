@@ -70,3 +70,36 @@ fn a_widget_with_the_keyboard_keeps_it_and_escape_gives_it_back() {
     harness.run();
     assert_eq!(orders(&mut harness), [Order::Pause(true)]);
 }
+
+#[test]
+fn tab_reaches_every_widget_of_the_panel() {
+    let mut harness = harness("dam-break-3d");
+    for folded in ["Compare", "Settings of the scene"] {
+        harness.get_by_label(folded).click();
+        harness.run();
+    }
+    let buttons = [
+        "List",
+        "Restart",
+        "Pause",
+        "Substep",
+        "None",
+        "Scene's",
+        "Apply",
+        "Side by side",
+    ];
+    let mut reached = std::collections::HashSet::new();
+    let mut missing: Vec<_> = buttons.to_vec();
+    for _ in 0..60 {
+        harness.key_press(Key::Tab);
+        harness.run();
+        reached.extend(harness.ctx.memory(|memory| memory.focused()));
+        missing.retain(|label| {
+            let mut nodes = harness.query_all_by_label(label);
+            !nodes.any(|node| node.is_focused())
+        });
+    }
+    assert_eq!(missing, [""; 0]);
+    // And sliders with their numbers, colours, choices.
+    assert!(reached.len() >= 30, "{}", reached.len());
+}
