@@ -4,7 +4,6 @@ use crate::instance::Instance;
 use crate::setup::Transfer;
 use crate::simulation::{Simulation, three};
 use crate::store::{Layout, PerParticle};
-use crate::transfer::scatter::What;
 
 /// Totals at one moment. Vectors have three components; in 2D the third is zero, and angular
 /// momentum is its third component.
@@ -122,19 +121,7 @@ pub(crate) fn measure<T: Instance<D>, const D: usize>(
 
 /// Σ over nodes of min(1, rest volume at the node / dxᴰ) dxᴰ: the space that is filled.
 fn filled_volume<T: Instance<D>, const D: usize>(simulation: &mut Simulation<T, D>) -> f64 {
-    for group in &simulation.groups {
-        let tiles = simulation.grid.tiles_mut();
-        T::scatter(
-            group,
-            simulation.scheme,
-            simulation.isa,
-            0.0,
-            What::Volume,
-            tiles,
-        );
-    }
+    simulation.rest_volume_to_grid();
     let cell = simulation.setup.dx.powi(D as i32);
-    simulation
-        .grid
-        .sum_nodes(simulation.isa, 0, |volume| volume.min(cell))
+    simulation.grid.over_nodes(|volume| volume.min(cell))
 }

@@ -309,6 +309,23 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         self.nodes = nodes;
     }
 
+    /// Sums the tiles' contributions and leaves them as they are.
+    pub(crate) fn sum_tiles(&mut self, isa: IsaToken) {
+        let mut nodes = core::mem::take(&mut self.nodes);
+        let block_len = self.block_len();
+        let grain = parallel::grain(self.blocks.len(), 16);
+        let this = &*self;
+        parallel::for_chunks(&mut nodes, block_len, 0, grain, &|first, piece| {
+            let _flush = crate::float_mode::FlushToZero::enter();
+            on_level!(isa.0, _simd => {
+                for (index, block) in piece.chunks_exact_mut(block_len).enumerate() {
+                    this.gather_tiles(first + index, block);
+                }
+            });
+        });
+        self.nodes = nodes;
+    }
+
     /// (1), (2): the sums over particles that the tiles have begun.
     #[inline(always)]
     fn gather_tiles(&self, block: usize, nodes: &mut [T]) {
@@ -433,23 +450,14 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         }
     }
 
-    /// `f(sum, lane)` over the nodes' sums of plane 0, before an update has run: for gauges.
-    pub(crate) fn sum_nodes(
-        &mut self,
-        isa: IsaToken,
-        lane: usize,
-        f: impl Fn(f64) -> f64 + Sync,
-    ) -> f64 {
-        let mut nodes = core::mem::take(&mut self.nodes);
-        let block_len = self.block_len();
+    /// Σ `f` over the first numbers of the nodes, after [`Grid::sum_tiles`]: for gauges.
+    pub(crate) fn over_nodes(&self, f: impl Fn(f64) -> f64) -> f64 {
         let mut total = 0.0;
-        for (block, nodes) in nodes.chunks_exact_mut(block_len).enumerate() {
-            on_level!(isa.0, _simd => self.gather_tiles(block, nodes));
+        for nodes in self.nodes.chunks_exact(self.block_len()) {
             for quad in nodes[..BLOCK_NODES * QUAD].chunks_exact(QUAD) {
-                total += f(quad[lane].to_f64());
+                total += f(quad[0].to_f64());
             }
         }
-        self.nodes = nodes;
         total
     }
 }

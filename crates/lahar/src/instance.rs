@@ -12,7 +12,7 @@ use crate::math::Lanes;
 use crate::store::Group;
 use crate::transfer::gather::Bounds;
 use crate::transfer::scatter::What;
-use crate::transfer::{Scheme, gather, scatter};
+use crate::transfer::{Scheme, gather, scatter, volume};
 
 /// Numbers that there is an engine for in `D` dimensions: `f32` and `f64` in 2D and 3D.
 pub trait Instance<const D: usize>: Kernels<D> {}
@@ -35,6 +35,18 @@ pub trait Kernels<const D: usize>: Lanes {
         dt: f64,
         what: What,
         tiles: &mut [Self],
+    );
+    /// The tiles' sums to the nodes, for gauges and for (7g).
+    #[doc(hidden)]
+    fn sum_tiles(grid: &mut Grid<Self, D>, isa: IsaToken);
+    /// The gathered J − 1.
+    #[doc(hidden)]
+    fn expansion(
+        group: &Group<Self, D>,
+        grid: &Grid<Self, D>,
+        scheme: Scheme,
+        isa: IsaToken,
+        out: &mut [Self],
     );
     /// The grid update.
     #[doc(hidden)]
@@ -74,6 +86,18 @@ macro_rules! instance {
                 tiles: &mut [Self],
             ) {
                 scatter::scatter(group, scheme, isa, dt, what, tiles);
+            }
+            fn sum_tiles(grid: &mut Grid<Self, $d>, isa: IsaToken) {
+                grid.sum_tiles(isa);
+            }
+            fn expansion(
+                group: &Group<Self, $d>,
+                grid: &Grid<Self, $d>,
+                scheme: Scheme,
+                isa: IsaToken,
+                out: &mut [Self],
+            ) {
+                volume::expansion(group, grid, scheme, isa, out);
             }
             fn update(
                 grid: &mut Grid<Self, $d>,

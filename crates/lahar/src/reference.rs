@@ -102,17 +102,16 @@ impl<const D: usize> Reference<D> {
         check(!singular, "force", || {
             "the linear kernel's inertia is singular at nodes: it needs force = \"classic\"".into()
         })?;
-        let walls = match &setup.domain {
-            Some(domain) => Walls::new(domain, setup.dx)?,
-            None => Walls::unbounded(),
-        };
+        let walls = Walls::of(setup)?;
         let origin = setup.domain.as_ref().map_or([0.0; D], |domain| domain.min);
         let mut particles = Vec::new();
+        let mut measured = Vec::new();
         for batch in batches {
             take_in(setup, batch, &mut particles)?;
+            measured.resize(particles.len(), batch.measure_volume);
         }
         forces::check(&setup.forces)?;
-        Ok(Self {
+        let mut reference = Self {
             starts: particles
                 .iter()
                 .map(|p: &Particle<D>| p.position.0)
@@ -123,7 +122,20 @@ impl<const D: usize> Reference<D> {
             walls,
             particles,
             escaped: Vec::new(),
-        })
+        };
+        let mut particles = core::mem::take(&mut reference.particles);
+        for particle in &mut particles {
+            reference.hold(particle);
+        }
+        reference.particles = particles;
+        if measured.contains(&true) {
+            let gathered = reference.gathered_jacobians();
+            let each = reference.particles.iter_mut().zip(gathered).zip(measured);
+            for ((particle, j), measured) in each {
+                particle.volume0 *= if measured { j } else { 1.0 };
+            }
+        }
+        Ok(reference)
     }
 
     /// The particles that are in the scene, by ascending id.
@@ -157,6 +169,7 @@ impl<const D: usize> Reference<D> {
     /// If a particle is nowhere, or so far away that its nodes cannot be counted.
     pub fn substep(&mut self, dt: f64) {
         self.push_particles(dt);
+        self.gather_volumes();
         let momentum = self.particles_to_grid(dt);
         let velocity = self.update_grid(&momentum, dt);
         self.grid_to_particles(&velocity, dt);
@@ -178,6 +191,39 @@ impl<const D: usize> Reference<D> {
             );
             p.velocity += Vector(a[0]) * dt; // (11)
         }
+    }
+
+    /// J of the materials that take it from the grid.
+    fn gather_volumes(&mut self) {
+        let gathers = |p: &Particle<D>| self.law(p).gathers_volume();
+        if !self.particles.iter().any(gathers) {
+            return;
+        }
+        let gathered = self.gathered_jacobians();
+        let mut particles = core::mem::take(&mut self.particles);
+        for (particle, j) in particles.iter_mut().zip(gathered) {
+            if self.law(particle).gathers_volume() {
+                particle.strain = vec![j - 1.0];
+            }
+        }
+        self.particles = particles;
+    }
+
+    /// By particle, how much more room there is on the grid than its rest volumes need.
+    fn gathered_jacobians(&self) -> Vec<f64> {
+        let mut volume = Grid::<f64, D>::new();
+        for particle in &self.particles {
+            for Touch { node, w, .. } in self.touched_nodes(particle) {
+                *volume.entry(node).or_default() += w * particle.volume0;
+            }
+        }
+        let cell = self.setup.dx.powi(D as i32);
+        let of = |particle: &Particle<D>| {
+            let touched = self.touched_nodes(particle).into_iter();
+            let around: f64 = touched.map(|touch| touch.w * volume[&touch.node]).sum();
+            cell / around // (7g)
+        };
+        self.particles.iter().map(of).collect()
     }
 
     /// P2G for a substep of `dt` \[s\].
@@ -341,8 +387,8 @@ impl<const D: usize> Reference<D> {
         self.escaped.extend::<Vec<_>>(gone);
     }
 
-    /// Walls on their plane hold the particle; periodic sides bring it in at the other end.
-    fn keep_in_domain(&self, particle: &mut Particle<D>) {
+    /// Walls on their plane and clamps hold a particle.
+    fn hold(&self, particle: &mut Particle<D>) {
         let dx = self.setup.dx;
         for axis in 0..D {
             let x = &mut particle.position[axis];
@@ -353,9 +399,24 @@ impl<const D: usize> Reference<D> {
             if let Some(high) = high {
                 *x = x.min(self.origin[axis] + high * dx);
             }
+        }
+    }
+
+    /// Periodic sides bring the particle in at the other end, a cushion slows it.
+    fn keep_in_domain(&self, particle: &mut Particle<D>) {
+        self.hold(particle);
+        let dx = self.setup.dx;
+        for axis in 0..D {
+            let x = &mut particle.position[axis];
             if let Some(cells) = self.walls.period[axis] {
                 let length = cells as f64 * dx;
                 *x -= ((*x - self.origin[axis]) / length).floor() * length;
+            }
+            if let Some(cushion) = &self.setup.cushion {
+                let ahead = |side: f64| (side - *x) / cushion.time;
+                let (low, high) = (cushion.inside.min[axis], cushion.inside.max[axis]);
+                let v = &mut particle.velocity[axis];
+                *v = v.max(ahead(low)).min(ahead(high));
             }
         }
     }
@@ -569,6 +630,7 @@ trait Law<const D: usize> {
     fn kirchhoff_stress(&self, strain: &[f64], gradient: Matrix<f64, D>) -> Matrix<f64, D>;
     fn advance(&self, strain: &[f64], increment: Matrix<f64, D>) -> Vec<f64>;
     fn energy_density(&self, strain: &[f64]) -> f64;
+    fn gathers_volume(&self) -> bool;
 }
 
 fn law<const D: usize>(model: &Model) -> &dyn Law<D> {
@@ -597,6 +659,9 @@ impl<M: ConstitutiveModel<D>, const D: usize> Law<D> for M {
     }
     fn energy_density(&self, strain: &[f64]) -> f64 {
         self.energy_density(M::Strain::<f64>::read(|column| strain[column]))
+    }
+    fn gathers_volume(&self) -> bool {
+        M::Strain::<f64>::JACOBIAN_COLUMN.is_some() && ConstitutiveModel::<D>::gathers_volume(self)
     }
 }
 

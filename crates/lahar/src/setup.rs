@@ -1,6 +1,6 @@
 //! What a simulation is made of, as plain data: checked once, by [`crate::Simulation::new`].
 
-use crate::boundary::Domain;
+use crate::boundary::{Corners, Cushion, Domain};
 use crate::forces::Force;
 use crate::material::Material;
 
@@ -11,6 +11,11 @@ pub struct Setup<const D: usize> {
     pub dx: f64,
     /// The box of the scene and its walls; `None`: unbounded, nodes at multiples of `dx`.
     pub domain: Option<Domain<D>>,
+    /// Particles that leave this box are put back on its sides; their velocities stay. Walls on their
+    /// planes do that besides.
+    pub clamp: Option<Corners<D>>,
+    /// Slows particles down before they reach the walls.
+    pub cushion: Option<Cushion<D>>,
     /// Acceleration of everything \[m/s²\].
     pub gravity: [f64; D],
     /// Forces besides gravity and stress.
@@ -36,6 +41,8 @@ impl<const D: usize> Setup<D> {
         Self {
             dx,
             domain: None,
+            clamp: None,
+            cushion: None,
             gravity: [0.0; D],
             forces: Vec::new(),
             kernel: Kernel::default(),
@@ -164,6 +171,9 @@ pub struct ParticleBatch<const D: usize> {
     pub velocity: Vec<[f64; D]>,
     /// Rest volumes \[m³; m² in 2D\]: one for all, or one a particle.
     pub volume: Vec<f64>,
+    /// Whether the volumes are measured at the start: each particle's V⁰ becomes its volume as given
+    /// times the J of equation (7g), with the masses left as they are.
+    pub measure_volume: bool,
     /// Masses \[kg\]: none (density × volume), one for all, or one a particle.
     pub mass: Vec<f64>,
     /// Affine matrices C \[1/s\], `c[i][j]` = ∂v_i/∂x_j: none (zero), or one a particle.

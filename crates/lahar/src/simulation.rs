@@ -16,8 +16,9 @@ use crate::particles::{Field, Snapshot};
 use crate::setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
 use crate::sort::{DRIFT_LIMIT, Escaped, Sorter, in_range};
 use crate::step::StepControl;
-use crate::store::{Group, Layout, Run, block_edge, locate};
+use crate::store::{Group, Layout, PerParticle, Run, block_edge, locate};
 use crate::transfer::Scheme;
+use crate::transfer::scatter::What;
 
 /// What can be told to a running simulation. Vectors have three components; 2D ignores the third.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -239,11 +240,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             times: PhaseTimes::default(),
             setup,
         };
-        for batch in batches {
-            simulation.append(batch)?;
-        }
-        simulation.sort();
-        simulation.measure();
+        simulation.take_in(batches)?;
         Ok(simulation)
     }
 
@@ -252,8 +249,20 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     /// # Errors
     /// Names what of the batch cannot be simulated; nothing is added then.
     pub fn add(&mut self, batch: &ParticleBatch<D>) -> Result<(), SetupError> {
-        self.append(batch)?;
+        self.take_in(core::slice::from_ref(batch))
+    }
+
+    fn take_in(&mut self, batches: &[ParticleBatch<D>]) -> Result<(), SetupError> {
+        let mut measured = Vec::new();
+        for batch in batches {
+            let first = self.next_id;
+            self.append(batch)?;
+            if batch.measure_volume {
+                measured.push(first..self.next_id);
+            }
+        }
         self.sort();
+        self.measure_volumes(&measured);
         self.measure();
         Ok(())
     }
@@ -266,11 +275,11 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         let mut located = Vec::with_capacity(count);
         for (i, position) in batch.position.iter().enumerate() {
             let place: [(i32, f64); D] = core::array::from_fn(|axis| {
-                locate(
-                    (position[axis] - self.origin[axis]) / self.setup.dx,
-                    offset,
-                    D,
-                )
+                // Whoever starts outside is put where the first substep would put it.
+                let (low, high) = self.walls.hold[axis];
+                let cells = (position[axis] - self.origin[axis]) / self.setup.dx;
+                let cells = cells.max(low.unwrap_or(cells)).min(high.unwrap_or(cells));
+                locate(cells, offset, D)
             });
             if !in_range(place.map(|(block, _)| block)) {
                 return setup_error(
@@ -499,18 +508,62 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     /// P2G.
     fn scatter(&mut self, dt: f64) {
         let start = self.now();
-        let what = crate::transfer::scatter::What::Momentum;
-        for group in &self.groups {
-            T::scatter(
-                group,
-                self.scheme,
-                self.isa,
-                dt,
-                what,
-                self.grid.tiles_mut(),
-            );
-        }
+        self.gather_volumes();
+        self.scatter_what(What::Momentum, dt);
         self.times.scatter += self.now() - start;
+    }
+
+    fn scatter_what(&mut self, what: What, dt: f64) {
+        for group in &self.groups {
+            let tiles = self.grid.tiles_mut();
+            T::scatter(group, self.scheme, self.isa, dt, what, tiles);
+        }
+    }
+
+    /// Rest volumes to the nodes, before an update has run.
+    pub(crate) fn rest_volume_to_grid(&mut self) {
+        self.scatter_what(What::Volume, 0.0);
+        T::sum_tiles(&mut self.grid, self.isa);
+    }
+
+    /// (7g) for the materials that want it.
+    fn gather_volumes(&mut self) {
+        let gathers = |group: &Group<T, D>| group.law.gathered_column().is_some();
+        if !self.groups.iter().any(gathers) {
+            return;
+        }
+        self.rest_volume_to_grid();
+        for group in &mut self.groups {
+            if let Some(column) = group.law.gathered_column() {
+                let column = Layout::strain(D) + column;
+                let mut out = core::mem::take(&mut group.columns[column]);
+                T::expansion(group, &self.grid, self.scheme, self.isa, &mut out);
+                group.columns[column] = out;
+            }
+        }
+    }
+
+    /// Particles with these ids get the rest volume that the grid says they fill.
+    fn measure_volumes(&mut self, ids: &[core::ops::Range<u32>]) {
+        if ids.is_empty() {
+            return;
+        }
+        self.rest_volume_to_grid();
+        for group in &mut self.groups {
+            let mut expansion = vec![T::default(); group.len()];
+            T::expansion(group, &self.grid, self.scheme, self.isa, &mut expansion);
+            let volume = |row: usize| {
+                let given = group.volume0.get(row);
+                if ids.iter().any(|ids| ids.contains(&group.id[row])) {
+                    given + given * expansion[row]
+                } else {
+                    given
+                }
+            };
+            let volumes: Vec<T> = (0..group.len()).map(volume).collect();
+            group.volume0 = PerParticle::Uniform(T::default());
+            group.volume0.extend(0, &volumes);
+        }
     }
 
     /// Momentum to velocity, forces, walls.
@@ -662,10 +715,7 @@ fn check<const D: usize>(setup: &Setup<D>, laws: usize) -> Result<Walls<D>, Setu
         _ => {}
     }
     forces::check(&setup.forces)?;
-    let walls = setup
-        .domain
-        .as_ref()
-        .map_or_else(|| Ok(Walls::unbounded()), |domain| Walls::new(domain, dx))?;
+    let walls = Walls::of(setup)?;
     let shortest = crate::kernel::STENCIL as i64;
     for axis in 0..D {
         if walls.period[axis].is_some_and(|period| period < shortest) {

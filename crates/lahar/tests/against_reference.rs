@@ -6,7 +6,7 @@ mod common;
 #[expect(dead_code, reason = "the method's checks use the rest")]
 mod engine;
 
-use common::brawl;
+use common::{brawl, brawl_with_all_options};
 use engine::{Engine, Fast, Oracle, State};
 use lahar::Instance;
 use lahar::{
@@ -145,6 +145,42 @@ fn every_material_2d() {
 #[test]
 fn every_material_3d() {
     every_material::<3>(16, 40);
+}
+
+/// What is off by default, in every kernel and transfer.
+fn all_options<T: Instance<D>, const D: usize>(cells: usize, steps: usize, limit: f64) {
+    let (mut setup, batches) = brawl_with_all_options::<D>(cells);
+    setup.time_step = TimeStep::Fixed(4e-4);
+    for kernel in [Kernel::Quadratic, Kernel::Cubic] {
+        for transfer in [Transfer::Flip { blend: 0.95 }, Transfer::Apic] {
+            (setup.kernel, setup.transfer) = (kernel, transfer);
+            let difference = compare::<T, D>(&setup, &batches, steps);
+            assert!(
+                difference < limit,
+                "{kernel:?} {transfer:?}: {difference:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn all_options_2d_f64() {
+    all_options::<f64, 2>(32, 60, 1e-9);
+}
+
+#[test]
+fn all_options_2d_f32() {
+    all_options::<f32, 2>(32, 20, 2e-4);
+}
+
+#[test]
+fn all_options_3d_f64() {
+    all_options::<f64, 3>(16, 12, 1e-9);
+}
+
+#[test]
+fn all_options_3d_f32() {
+    all_options::<f32, 3>(16, 8, 2e-4);
 }
 
 /// A periodic axis whose length is no whole number of blocks, crossed several times.

@@ -2,18 +2,17 @@
 
 mod common;
 
-use common::{ALL, bits, brawl, run_on};
+use common::{ALL, bits, brawl, brawl_with_all_options, run_on};
 use lahar::Instance;
 use lahar::particles::Field;
-use lahar::{Isa, Simulate, Simulation, Transfer};
+use lahar::{Isa, ParticleBatch, Setup, Simulate, Simulation, Transfer};
 
 /// Bits on 1, 2, 3 and 8 threads, over enough sorts that particles change blocks and order.
 fn same_bits_on_any_number_of_threads<T: Instance<D>, const D: usize>(
-    cells: usize,
+    (mut setup, batches): (Setup<D>, Vec<ParticleBatch<D>>),
     time: f64,
     transfer: Transfer,
 ) {
-    let (mut setup, batches) = brawl::<D>(cells);
     setup.transfer = transfer;
     let one = run_on::<T, D>(1, &setup, &batches, time);
     assert!(
@@ -49,17 +48,22 @@ fn same_bits_on_any_number_of_threads<T: Instance<D>, const D: usize>(
 
 #[test]
 fn threads_do_not_change_bits_2d() {
-    same_bits_on_any_number_of_threads::<f32, 2>(64, 0.4, Transfer::Apic);
+    same_bits_on_any_number_of_threads::<f32, 2>(brawl(64), 0.4, Transfer::Apic);
 }
 
 #[test]
 fn threads_do_not_change_bits_2d_f64_flip() {
-    same_bits_on_any_number_of_threads::<f64, 2>(64, 0.4, Transfer::Flip { blend: 0.97 });
+    same_bits_on_any_number_of_threads::<f64, 2>(brawl(64), 0.4, Transfer::Flip { blend: 0.97 });
 }
 
 #[test]
 fn threads_do_not_change_bits_3d() {
-    same_bits_on_any_number_of_threads::<f32, 3>(32, 0.3, Transfer::Apic);
+    same_bits_on_any_number_of_threads::<f32, 3>(brawl(32), 0.3, Transfer::Apic);
+}
+
+#[test]
+fn threads_do_not_change_bits_with_all_options() {
+    same_bits_on_any_number_of_threads::<f32, 2>(brawl_with_all_options(64), 0.4, Transfer::Apic);
 }
 
 /// The same scene elsewhere: everything but positions keeps its bits.

@@ -8,8 +8,8 @@ use engine::{Engine, Fast, Numbers, Oracle, State, oracle_of, times};
 use lahar::boundary::{Contact, Domain, Sides, WallStyle};
 use lahar::kernel::{BSpline, Cubic, Linear, Quadratic};
 use lahar::material::{
-    ConstitutiveModel, Corotated, Dust, Eos, Fluid, HardeningFrom, JacobianUpdate, Material, Model,
-    NeoHookean, PlasticGradient, Snow, Strain, lame,
+    ConstitutiveModel, Corotated, Dust, Eos, Fluid, HardeningFrom, Material, Model, NeoHookean,
+    PlasticGradient, Snow, Strain, lame,
 };
 use lahar::math::{Matrix, Scalar};
 use lahar::{Deformation, ForceForm, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
@@ -43,11 +43,10 @@ fn dust() -> Model {
 fn fluid(bulk_modulus: f64, viscosity: f64) -> Model {
     Model::Fluid(Fluid {
         eos: Eos::Tait { gamma: 1.0 },
-        bulk_modulus,
         viscosity,
         bulk_viscosity: viscosity,
         tension: f64::INFINITY,
-        jacobian_update: JacobianUpdate::Trace,
+        ..Fluid::inviscid(bulk_modulus)
     })
 }
 

@@ -11,6 +11,8 @@ impl<const D: usize> Plan<D> {
         Setup {
             dx: self.dx,
             domain: self.domain.clone(),
+            clamp: self.clamp,
+            cushion: self.cushion,
             gravity: self.gravity,
             forces: self.forces.clone(),
             kernel: self.kernel,

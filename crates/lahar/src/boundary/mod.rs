@@ -17,6 +17,25 @@ pub struct Domain<const D: usize> {
     pub style: WallStyle,
 }
 
+/// A box along the axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Corners<const D: usize> {
+    /// Lower corner \[m\].
+    pub min: [f64; D],
+    /// Upper corner \[m\].
+    pub max: [f64; D],
+}
+
+/// A box that particles slow down to stay in: at the end of a substep, no velocity is left that
+/// would carry its particle out within `time`. One that is out already is brought back in that time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cushion<const D: usize> {
+    /// The box.
+    pub inside: Corners<D>,
+    /// How far ahead it looks \[s\].
+    pub time: f64,
+}
+
 /// The two ends of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sides {

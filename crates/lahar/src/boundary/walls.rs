@@ -1,8 +1,9 @@
 //! The domain's walls as the nodes see them.
 
-use super::{Contact, Domain, Sides, WallStyle};
+use super::{Contact, Corners, Cushion, Domain, Sides, WallStyle};
 use crate::error::SetupError;
 use crate::math::{Scalar, Vector};
+use crate::setup::Setup;
 
 /// How far, in cells, a side may be from a whole number of them.
 const WHOLE_CELLS_TOLERANCE: f64 = 1e-6;
@@ -36,30 +37,60 @@ pub(crate) struct Walls<const D: usize> {
     high: [Option<End>; D],
     /// Cells on a periodic axis.
     pub(crate) period: [Option<i64>; D],
-    /// Where particles may be, in cells from the origin: (lowest, highest) if a wall on its plane
-    /// holds them there.
+    /// Where particles may be, in cells from the origin: (lowest, highest) if a wall on its plane or
+    /// a clamp holds them there.
     pub(crate) hold: [(Option<f64>, Option<f64>); D],
+    /// Where particles are slowed down to stay, in cells from the origin.
+    pub(crate) cushion: Option<NodeCushion<D>>,
     /// Beyond which particles are removed, in cells from the origin.
     pub(crate) open: [(Option<f64>, Option<f64>); D],
 }
 
+/// [`Cushion`] in cells.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NodeCushion<const D: usize> {
+    pub(crate) low: [f64; D],
+    pub(crate) high: [f64; D],
+    /// dx / time: the speed that crosses a cell in it \[m/s\].
+    pub(crate) speed: f64,
+}
+
 impl<const D: usize> Walls<D> {
-    pub(crate) fn unbounded() -> Self {
+    fn unbounded() -> Self {
         Self {
             planes: Vec::new(),
             low: [None; D],
             high: [None; D],
             period: [None; D],
             hold: [(None, None); D],
+            cushion: None,
             open: [(None, None); D],
         }
+    }
+
+    /// The walls of a scene, and what keeps particles in.
+    ///
+    /// # Errors
+    /// Names the key that makes no walls.
+    pub(crate) fn of(setup: &Setup<D>) -> Result<Self, SetupError> {
+        let (mut walls, origin) = match &setup.domain {
+            Some(domain) => (Self::new(domain, setup.dx)?, domain.min),
+            None => (Self::unbounded(), [0.0; D]),
+        };
+        walls.keep(
+            setup.clamp.as_ref(),
+            setup.cushion.as_ref(),
+            origin,
+            setup.dx,
+        )?;
+        Ok(walls)
     }
 
     /// The walls of `domain` on nodes `dx` apart.
     ///
     /// # Errors
     /// If a side is empty, or is not a whole number of cells.
-    pub(crate) fn new(domain: &Domain<D>, dx: f64) -> Result<Self, SetupError> {
+    fn new(domain: &Domain<D>, dx: f64) -> Result<Self, SetupError> {
         let mut walls = Self::unbounded();
         for axis in 0..D {
             let length = domain.max[axis] - domain.min[axis];
@@ -132,6 +163,46 @@ impl<const D: usize> Walls<D> {
         Ok(walls)
     }
 
+    /// Adds what keeps particles in boxes of their own.
+    ///
+    /// # Errors
+    /// If a box is empty, or the cushion's time is not positive.
+    fn keep(
+        &mut self,
+        clamp: Option<&Corners<D>>,
+        cushion: Option<&Cushion<D>>,
+        origin: [f64; D],
+        dx: f64,
+    ) -> Result<(), SetupError> {
+        let cells = |x: [f64; D]| -> [f64; D] {
+            core::array::from_fn(|axis| (x[axis] - origin[axis]) / dx)
+        };
+        if let Some(corners) = clamp {
+            check_corners("domain.clamp", corners)?;
+            let (low, high) = (cells(corners.min), cells(corners.max));
+            for axis in 0..D {
+                let hold = &mut self.hold[axis];
+                hold.0 = Some(hold.0.map_or(low[axis], |x| x.max(low[axis])));
+                hold.1 = Some(hold.1.map_or(high[axis], |x| x.min(high[axis])));
+            }
+        }
+        if let Some(cushion) = cushion {
+            check_corners("domain.cushion", &cushion.inside)?;
+            if !(cushion.time > 0.0 && cushion.time.is_finite()) {
+                return Err(SetupError {
+                    key: "domain.cushion.time".into(),
+                    message: format!("must be a positive number, not {}", cushion.time),
+                });
+            }
+            self.cushion = Some(NodeCushion {
+                low: cells(cushion.inside.min),
+                high: cells(cushion.inside.max),
+                speed: dx / cushion.time,
+            });
+        }
+        Ok(())
+    }
+
     /// Whether any node of `first .. first + edge` on each axis is in a wall of
     /// [`WallStyle::Nodes`].
     pub(crate) fn touch(&self, first: [i64; D], edge: usize) -> bool {
@@ -172,5 +243,19 @@ impl<const D: usize> Walls<D> {
             }
         }
         node
+    }
+}
+
+fn check_corners<const D: usize>(key: &str, corners: &Corners<D>) -> Result<(), SetupError> {
+    let empty = |axis: usize| {
+        let side = corners.max[axis] - corners.min[axis];
+        !(side > 0.0 && side.is_finite())
+    };
+    match (0..D).find(|&axis| empty(axis)) {
+        None => Ok(()),
+        Some(axis) => Err(SetupError {
+            key: format!("{key}.max"),
+            message: format!("must be above {key}.min along {}", ["x", "y", "z"][axis]),
+        }),
     }
 }

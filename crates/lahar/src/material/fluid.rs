@@ -38,8 +38,12 @@ pub struct Fluid {
     pub bulk_viscosity: f64,
     /// The largest tension that it bears \[Pa\]; 0: none; infinite: as the equation of state says.
     pub tension: f64,
-    /// How J follows the motion.
+    /// How J follows the motion, if it does.
     pub jacobian_update: JacobianUpdate,
+    /// Where J comes from.
+    pub volume: FluidVolume,
+    /// Which velocity gradients viscosity resists.
+    pub viscous_stress: ViscousStress,
 }
 
 /// Equation of state, K the bulk modulus.
@@ -62,6 +66,29 @@ pub enum JacobianUpdate {
     Trace,
     /// J ← J det(I + Δt C), as in mpm99.
     Determinant,
+}
+
+/// Where J comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FluidVolume {
+    /// It follows the motion of the particle, (7).
+    #[default]
+    Jacobian,
+    /// It is gathered from the grid before each substep, (7g): no memory, and so no drift; but a free
+    /// surface, where the grid is half empty, counts as expanded.
+    Gathered,
+}
+
+/// Which velocity gradients viscosity resists.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ViscousStress {
+    /// μ (∇v + ∇vᵀ − (2/d) tr ∇v I).
+    #[default]
+    Newtonian,
+    /// μ times the engineering strain rates: ∂v_i/∂x_i on the diagonal, ∂v_i/∂x_j + ∂v_j/∂x_i off it.
+    /// It depends on how the axes lie: a turned flow is resisted otherwise. Kept because the fluid of
+    /// incremental_mpm has it.
+    Engineering,
 }
 
 impl Fluid {
@@ -87,6 +114,8 @@ impl Fluid {
             bulk_viscosity: 0.0,
             tension: 0.0,
             jacobian_update: JacobianUpdate::Trace,
+            volume: FluidVolume::Jacobian,
+            viscous_stress: ViscousStress::Newtonian,
         }
     }
 
@@ -174,13 +203,25 @@ impl<const D: usize> ConstitutiveModel<D> for Fluid {
             return Matrix::scaled_identity(tau);
         }
         let l = velocity_gradient;
-        let mean = l.trace() * e.lit(kappa - 2.0 * mu / D as f64);
-        let shear = (l + l.transpose()) * e.lit(mu);
+        let mut shear = (l + l.transpose()) * e.lit(mu);
+        let mean = match self.viscous_stress {
+            ViscousStress::Newtonian => kappa - 2.0 * mu / D as f64,
+            ViscousStress::Engineering => {
+                for i in 0..D {
+                    shear[(i, i)] = l[(i, i)] * e.lit(mu);
+                }
+                kappa
+            }
+        };
+        let mean = l.trace() * e.lit(mean);
         (shear + Matrix::scaled_identity(mean)) * j + Matrix::scaled_identity(tau)
     }
 
     #[inline(always)]
     fn advance<R: Real>(&self, strain: Dilatation<R>, increment: Matrix<R, D>) -> Dilatation<R> {
+        if self.volume == FluidVolume::Gathered {
+            return strain;
+        }
         let e = strain.jacobian_minus_one;
         let change = match self.jacobian_update {
             JacobianUpdate::Trace => increment.trace(),
@@ -209,6 +250,10 @@ impl<const D: usize> ConstitutiveModel<D> for Fluid {
             Eos::LinearJ => 2.0,
         };
         j.power(exponent) * e.lit(self.bulk_modulus)
+    }
+
+    fn gathers_volume(&self) -> bool {
+        self.volume == FluidVolume::Gathered
     }
 
     /// What damps a longitudinal wave, κ + 2μ(1 − 1/d), or a shear wave, μ: the larger.

@@ -36,6 +36,8 @@ pub struct IsaToken(pub(crate) Level);
 pub trait Law<T: Lanes, const D: usize>: Send + Sync {
     /// Columns of strain a particle.
     fn strain_columns(&self) -> usize;
+    /// The column of J − 1, for a model that gathers it from the grid before each substep.
+    fn gathered_column(&self) -> Option<usize>;
     /// Writes Kirchhoff stress of particles `start .. start + count` (at most a chunk):
     /// `out[(j·D + i)·CHUNK + p]` = τ_ij \[Pa\].
     fn kirchhoff_stress(
@@ -147,6 +149,10 @@ pub(crate) fn store_part<S: Simd, T: Lanes>(value: T::Of<S>, slice: &mut [T], co
 impl<T: Lanes, const D: usize, M: ConstitutiveModel<D>> Law<T, D> for Compiled<M> {
     fn strain_columns(&self) -> usize {
         <M::Strain<f64> as Strain<f64, D>>::COLUMNS
+    }
+
+    fn gathered_column(&self) -> Option<usize> {
+        <M::Strain<f64> as Strain<f64, D>>::JACOBIAN_COLUMN.filter(|_| self.0.gathers_volume())
     }
 
     fn kirchhoff_stress(

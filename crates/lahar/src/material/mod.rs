@@ -14,7 +14,7 @@ mod snow;
 mod strain;
 
 pub use corotated::Corotated;
-pub use fluid::{Eos, Fluid, JacobianUpdate, SMALLEST_JACOBIAN, TORN};
+pub use fluid::{Eos, Fluid, FluidVolume, JacobianUpdate, SMALLEST_JACOBIAN, TORN, ViscousStress};
 pub(crate) use law::{CHUNK, built_in, load_part, store_part};
 pub use law::{IsaToken, Law, ParticleState, law};
 pub use neo_hookean::{LOGARITHM_ENDS, NeoHookean};
@@ -52,6 +52,12 @@ pub trait ConstitutiveModel<const D: usize>: Copy + Send + Sync {
     /// An upper bound on (speed of elastic waves)² × density at rest \[Pa\]: the largest
     /// stiffness ∂²Φ/∂F² in this state, in the current configuration.
     fn wave_modulus<R: Real>(&self, strain: Self::Strain<R>) -> R;
+
+    /// Whether J is gathered from the grid before each substep, equation (7g), instead of following
+    /// the motion. For models whose strain is a [`Dilatation`]; others are not asked.
+    fn gathers_volume(&self) -> bool {
+        false
+    }
 
     /// Dynamic viscosity \[Pa s\], the largest of the law's (of shear or of longitudinal waves),
     /// for the time step.

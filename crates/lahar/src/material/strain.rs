@@ -10,6 +10,8 @@ use crate::math::{Matrix, Real};
 pub trait Strain<R: Real, const D: usize>: Copy {
     /// Columns of storage.
     const COLUMNS: usize;
+    /// The column that is J − 1, if that is all this strain keeps.
+    const JACOBIAN_COLUMN: Option<usize> = None;
     /// No deformation, in the lanes of `like`.
     fn rest(like: R) -> Self;
     /// From the columns, in order.
@@ -90,6 +92,7 @@ pub(super) fn largest_squared_stretch<R: Real, const D: usize>(h: Matrix<R, D>) 
 
 impl<R: Real, const D: usize> Strain<R, D> for Dilatation<R> {
     const COLUMNS: usize = 1;
+    const JACOBIAN_COLUMN: Option<usize> = Some(0);
     #[inline(always)]
     fn rest(like: R) -> Self {
         Self {

@@ -1,9 +1,9 @@
 //! Grid to particles: (5)–(8).
 
 use super::scatter::{split_runs, stencil};
-use super::{Scheme, Stage, rows, with_scheme};
+use super::{LARGEST_TILE, Scheme, Stage, rows, with_scheme};
 use crate::boundary::walls::Walls;
-use crate::grid::{Grid, tile_edge, tile_plane};
+use crate::grid::{Grid, tile_edge};
 use crate::kernel::BSpline;
 use crate::material::{CHUNK, IsaToken, load_part, store_part};
 use crate::math::{Lanes, Mask, Matrix, Real, Vector};
@@ -11,9 +11,6 @@ use crate::parallel;
 use crate::setup::Transfer;
 use crate::store::{ColumnsMut, Group, Layout, Run, block_edge};
 use fearless_simd::Simd;
-
-/// Numbers of the largest tile: cubic in 3D, two planes.
-const LARGEST_TILE: usize = 2 * tile_plane::<3>(tile_edge::<3>(4));
 
 /// What a gather found out, for the next time step and for the sort.
 #[derive(Clone, Copy, Debug)]
@@ -129,13 +126,16 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         stage: &mut Stage<T>,
     ) -> Bounds {
         let plane = self.grid.tile_plane();
-        let hold = self.hold(run);
+        let keep = Keep {
+            hold: self.hold(run),
+            cushion: self.cushion(run),
+        };
         let mut bounds = Bounds::NONE;
         for row in run.rows().step_by(CHUNK) {
             let start = row - first_row;
             let count = CHUNK.min(run.end as usize - row);
             let mut found = with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
-                chunk::<_, T, D, K, SPLIT, CLASSIC>(simd, self, start, count, plane, tile, &hold, columns, stage)
+                chunk::<_, T, D, K, SPLIT, CLASSIC>(simd, self, start, count, plane, tile, &keep, columns, stage)
             });
             let strain = &mut columns.slices[Layout::strain(D)..];
             let modulus = self
@@ -152,6 +152,20 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
             bounds = bounds.and(found);
         }
         bounds
+    }
+
+    /// The cushion as this block's particles see it.
+    fn cushion(&self, run: &Run<D>) -> Option<([(T, T); D], T)> {
+        let cushion = self.walls.cushion.as_ref()?;
+        let edge = block_edge(D) as f64;
+        let range = core::array::from_fn(|axis| {
+            let middle = edge * (f64::from(run.block[axis]) + 0.5) + self.scheme.offset();
+            (
+                T::from_f64(cushion.low[axis] - middle),
+                T::from_f64(cushion.high[axis] - middle),
+            )
+        });
+        Some((range, T::from_f64(cushion.speed)))
     }
 
     /// Where this block's particles may be, as stored: `None` if no wall is near.
@@ -172,6 +186,14 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         });
         near.then_some(range)
     }
+}
+
+/// What keeps a block's particles in; positions as stored, (lowest, highest) on each axis.
+struct Keep<T, const D: usize> {
+    /// Where they may be: `None` if no wall is near.
+    hold: Option<[(T, T); D]>,
+    /// Where they are slowed down to stay, and the speed that crosses a cell in the time it looks ahead.
+    cushion: Option<([(T, T); D], T)>,
 }
 
 /// A vector of a register of particles from its columns.
@@ -217,7 +239,7 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
     count: usize,
     plane: usize,
     tile: &[T],
-    hold: &Option<[(T, T); D]>,
+    keep: &Keep<T, D>,
     columns: &mut ColumnsMut<'_, T>,
     stage: &mut Stage<T>,
 ) -> Bounds {
@@ -277,11 +299,20 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
         }
         let step = v * zero.lit(cells_per_velocity);
         let mut new_u = u + step; // (8)
-        if let Some(hold) = hold {
+        if let Some(hold) = &keep.hold {
             for axis in 0..D {
                 new_u[axis] = new_u[axis]
                     .max(zero.splat(hold[axis].0))
                     .min(zero.splat(hold[axis].1));
+            }
+        }
+
+        if let Some((cushion, speed)) = &keep.cushion {
+            let speed = zero.splat(*speed);
+            for axis in 0..D {
+                let lowest = (zero.splat(cushion[axis].0) - new_u[axis]) * speed;
+                let highest = (zero.splat(cushion[axis].1) - new_u[axis]) * speed;
+                new_v[axis] = new_v[axis].max(lowest).min(highest);
             }
         }
 

@@ -15,11 +15,16 @@
 pub(crate) mod gather;
 pub(crate) mod rows;
 pub(crate) mod scatter;
+pub(crate) mod volume;
 
+use crate::grid::{tile_edge, tile_plane};
 use crate::kernel::BSpline;
 use crate::material::CHUNK;
 use crate::math::Lanes;
 use crate::setup::{ForceForm, Kernel, Transfer};
+
+/// Numbers of the largest tile: cubic in 3D, two planes.
+const LARGEST_TILE: usize = 2 * tile_plane::<3>(tile_edge::<3>(4));
 
 /// What the loops need to know of scheme, kernel and step; all lengths in cells.
 #[derive(Clone, Copy, Debug)]

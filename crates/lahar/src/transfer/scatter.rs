@@ -15,7 +15,7 @@ use fearless_simd::Simd;
 pub(crate) enum What {
     /// Momentum, mass and the impulse of stress.
     Momentum,
-    /// For gauges: rest volume where the first component of momentum would be; mass.
+    /// For gauges and for (7g): rest volume where the first component of momentum would be; mass.
     Volume,
 }
 
@@ -141,7 +141,7 @@ pub(super) fn load_each<S: Simd, T: Lanes>(
 
 /// A vector of a register of particles from its columns.
 #[inline(always)]
-fn load_vector<S: Simd, T: Lanes, const D: usize>(
+pub(super) fn load_vector<S: Simd, T: Lanes, const D: usize>(
     simd: S,
     columns: &[Vec<T>],
     at: usize,

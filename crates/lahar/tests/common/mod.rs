@@ -1,10 +1,12 @@
 //! Scenes that several tests run.
 
-use lahar::material::{Corotated, Dust, Eos, Fluid, JacobianUpdate, NeoHookean, Snow, lame};
+use lahar::material::{
+    Corotated, Dust, Eos, Fluid, FluidVolume, HardeningFrom, NeoHookean, Snow, ViscousStress, lame,
+};
 use lahar::particles::{Data, Field, Snapshot};
 use lahar::{
-    Contact, Domain, Material, Model, ParticleBatch, Setup, Sides, Simulate, Simulation, TimeStep,
-    WallStyle,
+    Contact, Corners, Cushion, Domain, Material, Model, ParticleBatch, Setup, Sides, Simulate,
+    Simulation, TimeStep, WallStyle,
 };
 
 /// A small generator of even numbers, the same everywhere (splitmix64).
@@ -37,11 +39,10 @@ pub(crate) fn one_of_each() -> Vec<Material> {
             1000.0,
             Model::Fluid(Fluid {
                 eos: Eos::Tait { gamma: 7.0 },
-                bulk_modulus: 1000.0 * 5.0 * 5.0,
                 viscosity: 0.5,
                 bulk_viscosity: 0.1,
                 tension: 0.0,
-                jacobian_update: JacobianUpdate::Trace,
+                ..Fluid::inviscid(1000.0 * 5.0 * 5.0)
             }),
         ),
         material("jelly", 500.0, Model::Corotated(Corotated { lambda, mu })),
@@ -133,6 +134,48 @@ pub(crate) fn brawl<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatc
         cfl: 0.3,
         longest: f64::INFINITY,
     };
+    (setup, batches)
+}
+
+/// The brawl with what is off by default: water whose J is gathered and whose viscosity is of the
+/// other kind, jelly with measured volumes, snow's other hardening; particles clamped and cushioned,
+/// some of them outside at the start.
+pub(crate) fn brawl_with_all_options<const D: usize>(
+    cells: usize,
+) -> (Setup<D>, Vec<ParticleBatch<D>>) {
+    let (mut setup, mut batches) = brawl::<D>(cells);
+    let size = setup.dx * cells as f64;
+    for material in &mut setup.materials {
+        match &mut material.model {
+            Model::Fluid(fluid) => {
+                fluid.volume = FluidVolume::Gathered;
+                fluid.viscous_stress = ViscousStress::Engineering;
+                fluid.tension = 100.0;
+            }
+            Model::Snow(snow) => {
+                snow.hardening_from = HardeningFrom::Previous;
+                snow.hardening_range = [0.1, 5.0];
+            }
+            _ => {}
+        }
+    }
+    for batch in &mut batches {
+        batch.measure_volume = matches!(
+            setup.materials[batch.material].model,
+            Model::Corotated(_) | Model::NeoHookean(_)
+        );
+    }
+    setup.clamp = Some(Corners {
+        min: [0.14 * size; D],
+        max: [0.86 * size; D],
+    });
+    setup.cushion = Some(Cushion {
+        inside: Corners {
+            min: [0.2 * size; D],
+            max: [0.8 * size; D],
+        },
+        time: 0.05,
+    });
     (setup, batches)
 }
 

@@ -102,6 +102,7 @@ pub(crate) fn oracle_of<const D: usize>(setup: &Setup<D>, particles: &[State<D>]
     let batch = |p: &State<D>| ParticleBatch {
         material: p.material,
         body: p.body,
+        measure_volume: false,
         position: vec![p.position],
         velocity: vec![p.velocity],
         volume: vec![p.volume0],
