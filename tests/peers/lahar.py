@@ -25,7 +25,9 @@ def run(program, scene, bodies, steps, precision="f64", settings=(), threads=1):
         for name, start in bodies.items():
             if start is not None:
                 np.savez(folder / f"{name}.npz", **start)
-                overrides += [f"bodies.{name}.particles={folder / name}.npz", f"bodies.{name}.velocity={[0.0] * start['position'].shape[1]}"]
+                zero = [0.0] * start["position"].shape[1]
+                overrides.append(f"bodies.{name}.particles={folder / name}.npz")
+                overrides += [f"bodies.{name}.{key}={zero}" for key in ("velocity", "velocity_spread")]
         for override in overrides:
             words += ["--set", override]
         done = subprocess.run(words, capture_output=True, text=True)

@@ -39,14 +39,23 @@ const SCENES: &[Builtin] = scenes! {
     "jelly-drop" 2 "Jelly drop" "Jellies of three firmnesses fall: the soft one spreads, the firm one jumps.";
     "snowball" 2 "Snowball" "A thrown snowball bursts on a wall.";
     "mpm88" in "lineage" 2 "mpm88" "The fluid square of Taichi's mpm88.py, with its constants, walls and time step.";
+    "mpm88-corrected" in "lineage" 2 "mpm88, corrected" "The same with walls on their planes, and without holes and strings.";
     "mpm99" in "lineage" 2 "mpm99" "Taichi's mpm99.py: liquid, jelly and snow fall into a box under strong gravity.";
+    "mpm99-corrected" in "lineage" 2 "mpm99, corrected" "The same with walls on their planes, and a liquid as stiff as its fall asks for.";
     "mpm128" in "lineage" 2 "mpm128" "Taichi's mpm128.py: stiffer liquid, jelly and snow, to be stirred with the mouse.";
+    "mpm128-corrected" in "lineage" 2 "mpm128, corrected" "The same with walls on their planes, and gravity that stays as it is turned.";
     "mpm3d" in "lineage" 3 "mpm3d, 32 cells a side" "Taichi's mpm3d.py: a cube of mpm88's fluid falls into a box.";
-    "mpm3d-64" in "lineage" 3 "mpm3d, 64 cells a side" "The same with 65,536 particles.";
-    "mpm3d-128" in "lineage" 3 "mpm3d, 128 cells a side" "The same with 524,288 particles.";
+    "mpm3d-corrected" in "lineage" 3 "mpm3d, corrected" "The same with particles of their true volume, and walls on their planes.";
+    "mpm3d-64" in "lineage" 3 "mpm3d, 64 cells a side" "mpm3d with 65,536 particles.";
+    "mpm3d-128" in "lineage" 3 "mpm3d, 128 cells a side" "mpm3d with 524,288 particles.";
     "mpm3d-ggui-single-dam" in "lineage" 3 "mpm3d_ggui, single dam break" "Taichi's mpm3d_ggui.py, first preset: a block of water collapses in a corner.";
     "mpm3d-ggui-double-dam" in "lineage" 3 "mpm3d_ggui, double dam break" "Its second preset: two blocks of water meet.";
     "mpm3d-ggui-water-snow-jelly" in "lineage" 3 "mpm3d_ggui, water, snow and jelly" "Its third preset: cubes of water, snow and jelly fall and touch.";
+    "mls-mpm88" in "lineage" 2 "mls-mpm88" "The 88 lines of C++ that came with the paper on MLS-MPM: three squares of snow fall.";
+    "incremental-mpm-1" in "lineage" 2 "incremental_mpm 1: dust" "nialltl's first stage: particles without stress, evened out by the grid.";
+    "incremental-mpm-2" in "lineage" 2 "incremental_mpm 2: neo-Hookean" "His second: a square of rubber bounces.";
+    "incremental-mpm-3" in "lineage" 2 "incremental_mpm 3: fluid" "His third: a square of fluid, its density gathered from the grid, splashes between soft walls.";
+    "incremental-mpm-3-corrected" in "lineage" 2 "incremental_mpm 3, corrected" "The same with Newtonian viscosity, density that follows the motion, and plain walls.";
 };
 
 /// Scenes with published numbers to compare with; not listed, but found by name.

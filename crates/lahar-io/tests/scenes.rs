@@ -71,6 +71,45 @@ fn a_start_is_replaced_from_the_command_line() {
     assert!(back.expected_particles() > 2000.0);
 }
 
+/// Measured volumes: those of the surface are larger, those inside a lattice as given; masses stay.
+#[test]
+fn volumes_are_measured() {
+    let lattice = ("bodies.column.sampling", "lattice");
+    let measured = ("bodies.column.volume", "measured");
+    let mut plain = build(&with(&[lattice]));
+    let mut body = build(&with(&[lattice, measured]));
+    let given = column(&*plain, Field::Volume0);
+    let found = column(&*body, Field::Volume0);
+    let (least, most) = found.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), v| {
+        (a.min(v / given[0]), b.max(v / given[0]))
+    });
+    assert!((least - 1.0).abs() < 1e-5, "{least}");
+    assert!(most > 2.0, "{most}");
+    assert_eq!(body.diagnostics().mass, plain.diagnostics().mass);
+}
+
+/// A spread moves velocities only, evenly, by up to what it says.
+#[test]
+fn velocities_are_spread() {
+    let plain = build(&with(&[]));
+    let spread = build(&with(&[
+        ("bodies.column.velocity", "[0.0, 1.0]"),
+        ("bodies.column.velocity_spread", "[0.25, 0.5]"),
+    ]));
+    assert_eq!(
+        column(&*plain, Field::Position),
+        column(&*spread, Field::Position)
+    );
+    let v = column(&*spread, Field::Velocity);
+    for (axis, middle, most) in [(0, 0.0, 0.25), (1, 1.0, 0.5)] {
+        let away = |p: &[f64]| (p[axis] - middle) / most;
+        let largest = v.chunks(2).map(|p| away(p).abs()).fold(0.0, f64::max);
+        let mean = v.chunks(2).map(away).sum::<f64>() / (v.len() / 2) as f64;
+        assert!(largest > 0.95 && largest <= 1.0 + 1e-6, "{largest}");
+        assert!(mean.abs() < 0.15, "{mean}");
+    }
+}
+
 #[test]
 fn overrides_replace_and_add() {
     let scene = with(&[

@@ -57,7 +57,7 @@ fn corotated() -> Model {
 
 fn neo_hookean() -> Model {
     let (lambda, mu) = lame(YOUNGS_MODULUS, POISSON_RATIO);
-    Model::NeoHookean(NeoHookean { lambda, mu })
+    Model::NeoHookean(NeoHookean::from_lame(lambda, mu))
 }
 
 fn snow() -> Model {

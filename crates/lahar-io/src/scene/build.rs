@@ -107,10 +107,12 @@ fn batch<const D: usize>(
     }
     match body.volume {
         Volume::Source => {}
+        Volume::Measured => batch.measure_volume = true,
         Volume::Body(volume) => batch.volume = vec![volume / batch.position.len().max(1) as f64],
         Volume::Particle(volume) => batch.volume = vec![volume],
     }
     add_motion(&mut batch, body, dx);
+    add_spread(&mut batch, body, seed);
     batch
 }
 
@@ -166,6 +168,23 @@ fn add_motion<const D: usize>(batch: &mut ParticleBatch<D>, body: &Body<D>, dx: 
             for i in 0..D {
                 c[i][j] += (high[i] - low[i]) / dx;
             }
+        }
+    }
+}
+
+/// Adds to each velocity up to the body's spread, at random.
+fn add_spread<const D: usize>(batch: &mut ParticleBatch<D>, body: &Body<D>, seed: u64) {
+    if body.velocity_spread == [0.0; D] {
+        return;
+    }
+    if let [one] = batch.velocity[..] {
+        batch.velocity = vec![one; batch.position.len()];
+    }
+    // Numbers of its own, so that positions do not depend on the spread.
+    let mut random = Random::new(!seed, u64::from(batch.body));
+    for v in &mut batch.velocity {
+        for (v, spread) in v.iter_mut().zip(body.velocity_spread) {
+            *v += spread * (2.0 * random.unit() - 1.0);
         }
     }
 }

@@ -213,6 +213,7 @@ pub(crate) const SECTIONS: &[&Section] = &[
     &DOMAIN,
     &WALLS,
     &CONTACT,
+    &CUSHION,
     &NONE,
     &FLUID,
     &COROTATED,
@@ -438,6 +439,42 @@ pub(crate) static DOMAIN: Section = Section {
             "",
             Value("\"separate\""),
             "A contact for all sides, or a table by side.",
+        ),
+        key(
+            "clamp",
+            Kind::Table(&BOX),
+            "",
+            Words("none"),
+            "A box like that of a shape; particles that leave it are put back on its sides, their velocities stay.",
+        ),
+        key(
+            "cushion",
+            Kind::Table(&CUSHION),
+            "",
+            Words("none"),
+            "Slows particles down before they reach the walls.",
+        ),
+    ]],
+};
+
+pub(crate) static CUSHION: Section = Section {
+    name: "cushion",
+    header: "cushion = { .. } in [domain]",
+    keys: &[&[
+        key(
+            "min",
+            Kind::Vector,
+            "m",
+            Required,
+            "Lower corner of the box that particles slow down to stay in.",
+        ),
+        key("max", Kind::Vector, "m", Required, "Upper corner."),
+        key(
+            "time",
+            Kind::Number(Bound::Positive),
+            "s",
+            Required,
+            "How far ahead it looks: at the end of a substep no velocity is left that would carry its particle out within this time.",
         ),
     ]],
 };
@@ -720,7 +757,20 @@ pub(crate) static FLUID: Section = Section {
                 Value("\"trace\""),
                 "J ← J(1 + Δt tr C), or J ← J det(I + Δt C).",
             ),
-            later("volume"),
+            key(
+                "volume",
+                Kind::Word(&["jacobian", "gathered"]),
+                "",
+                Value("\"jacobian\""),
+                "J follows the motion, or is gathered from the grid before each substep: without memory, so that nothing drifts, but what lies at a surface, or at a wall on its plane, counts as expanded.",
+            ),
+            key(
+                "viscous_stress",
+                Kind::Word(&["newtonian", "engineering"]),
+                "",
+                Value("\"newtonian\""),
+                "Viscosity times ∇v + ∇vᵀ − (2/d) tr ∇v, or times the engineering strain rates, ∂v_x/∂x and ∂v_x/∂y + ∂v_y/∂x, which depend on how the axes lie.",
+            ),
             later("rheology"),
             later("yield_stress"),
             later("consistency"),
@@ -738,7 +788,17 @@ pub(crate) static COROTATED: Section = Section {
 pub(crate) static NEO_HOOKEAN: Section = Section {
     name: "material: neo_hookean",
     header: "[materials.NAME] with model = \"neo_hookean\"",
-    keys: &[MATERIAL, ELASTIC],
+    keys: &[
+        MATERIAL,
+        ELASTIC,
+        &[key(
+            "logarithm_ends",
+            Kind::Number(Bound::Part),
+            "",
+            Value("0.1"),
+            "The J below which ln J goes on as a straight line, so that what is pressed flat or turned inside out is pushed back; above 0.",
+        )],
+    ],
 };
 
 pub(crate) static SNOW: Section = Section {
@@ -834,6 +894,13 @@ pub(crate) static BODY: Section = Section {
             "Velocity at the start, numbers or expressions in x, y, z; added to that of a particle list.",
         ),
         key(
+            "velocity_spread",
+            Kind::Vector,
+            "m/s",
+            Words("none"),
+            "Each particle's velocity differs by up to this, at random, on each axis.",
+        ),
+        key(
             "spin",
             Kind::Rotation,
             "rad/s",
@@ -884,10 +951,10 @@ pub(crate) static BODY: Section = Section {
         ),
         key(
             "volume",
-            Kind::Number(Bound::Positive),
+            Kind::OneOf(&[Kind::Number(Bound::Positive), Kind::Word(&["measured"])]),
             "m³",
             Words("the shape's"),
-            "Rest volume of the whole body, shared by its particles alike.",
+            "Rest volume of the whole body, shared by its particles alike; `\"measured\"`: masses as without this key, and each particle's rest volume is the room that it has on the grid at the start.",
         ),
         key(
             "color",

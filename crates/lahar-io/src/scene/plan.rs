@@ -11,11 +11,12 @@ use crate::particle_list::ParticleList;
 use crate::sampling::{Sampling, expected_count};
 use crate::shape::{Bounds, Region, Shape};
 use lahar::material::{
-    Corotated, Dust, Eos, Fluid, HardeningFrom, JacobianUpdate, NeoHookean, Snow, lame,
+    Corotated, Dust, Eos, Fluid, FluidVolume, HardeningFrom, JacobianUpdate, NeoHookean, Snow,
+    ViscousStress, lame,
 };
 use lahar::{
-    Contact, Domain, Force, ForceForm, Kernel, Material, Model, Sides, TimeStep, Transfer,
-    WallStyle,
+    Contact, Corners, Cushion, Domain, Force, ForceForm, Kernel, Material, Model, Sides, TimeStep,
+    Transfer, WallStyle,
 };
 use std::path::Path;
 
@@ -29,6 +30,8 @@ pub(crate) struct Plan<const D: usize> {
     /// Simulated time of a run \[s\].
     pub(crate) duration: f64,
     pub(crate) domain: Option<Domain<D>>,
+    pub(crate) clamp: Option<Corners<D>>,
+    pub(crate) cushion: Option<Cushion<D>>,
     pub(crate) kernel: Kernel,
     pub(crate) transfer: Transfer,
     pub(crate) force: ForceForm,
@@ -45,6 +48,8 @@ pub(crate) struct Body<const D: usize> {
     pub(crate) material: usize,
     pub(crate) source: Source<D>,
     pub(crate) velocity: Formulas<D>,
+    /// How far each particle's velocity may be from that \[m/s\].
+    pub(crate) velocity_spread: [f64; D],
     /// ∂v_i/∂x_j of spin and velocity gradient together \[1/s\].
     pub(crate) gradient: [[f64; D]; D],
     pub(crate) volume: Volume,
@@ -71,6 +76,8 @@ pub(crate) enum Volume {
     Body(f64),
     /// The scene, for a particle \[m³\].
     Particle(f64),
+    /// The grid, at the start.
+    Measured,
 }
 
 impl<const D: usize> Body<D> {
@@ -146,6 +153,10 @@ impl<const D: usize> Plan<D> {
             .opt_table("domain")
             .map(|table| read_domain(scene, &table, dx))
             .transpose()?;
+        let (clamp, cushion) = match scene.opt_table("domain") {
+            Some(table) => read_keep(&table)?,
+            None => (None, None),
+        };
         let kernel = match scene.text("kernel")? {
             "linear" => Kernel::Linear,
             "cubic" => Kernel::Cubic,
@@ -198,6 +209,8 @@ impl<const D: usize> Plan<D> {
             forces,
             duration: scene.number("duration")?,
             domain,
+            clamp,
+            cushion,
             kernel,
             transfer,
             force,
@@ -504,6 +517,36 @@ fn read_domain<const D: usize>(
     })
 }
 
+/// What keeps particles in, besides walls.
+type Keep<const D: usize> = (Option<Corners<D>>, Option<Cushion<D>>);
+
+fn read_keep<const D: usize>(domain: &Reader<'_>) -> Result<Keep<D>, SceneError> {
+    let corners = |table: &Reader<'_>| -> Result<Corners<D>, SceneError> {
+        let (min, max): ([f64; D], [f64; D]) = (table.vector("min")?, table.vector("max")?);
+        match (0..D).find(|&i| !(max[i] > min[i])) {
+            None => Ok(Corners { min, max }),
+            Some(i) => {
+                let message = format!(
+                    "this box has no extent along {}: max {} is not above min {}",
+                    AXES[i], max[i], min[i]
+                );
+                Err(table.error_at("max", message))
+            }
+        }
+    };
+    let clamp = domain.opt_table("clamp");
+    let cushion = domain.opt_table("cushion").map(|table| {
+        Ok(Cushion {
+            inside: corners(&table)?,
+            time: table.number("time")?,
+        })
+    });
+    Ok((
+        clamp.map(|table| corners(&table)).transpose()?,
+        cushion.transpose()?,
+    ))
+}
+
 pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], ["back", "front"]];
 
@@ -633,7 +676,15 @@ fn read_material<const D: usize>(
         }
         "neo_hookean" => {
             let (lambda, mu) = read_moduli::<D>(table)?;
-            Model::NeoHookean(NeoHookean { lambda, mu })
+            let logarithm_ends = table.number("logarithm_ends")?;
+            if logarithm_ends == 0.0 {
+                return Err(table.error_at("logarithm_ends", "\"logarithm_ends\" must be above 0"));
+            }
+            Model::NeoHookean(NeoHookean {
+                lambda,
+                mu,
+                logarithm_ends,
+            })
         }
         _ => Model::Snow(read_snow::<D>(table)?),
     };
@@ -681,6 +732,16 @@ fn read_fluid(table: &Reader<'_>) -> Result<(Fluid, Stiffness), SceneError> {
             JacobianUpdate::Determinant
         } else {
             JacobianUpdate::Trace
+        },
+        volume: if table.text("volume")? == "gathered" {
+            FluidVolume::Gathered
+        } else {
+            FluidVolume::Jacobian
+        },
+        viscous_stress: if table.text("viscous_stress")? == "engineering" {
+            ViscousStress::Engineering
+        } else {
+            ViscousStress::Newtonian
         },
     };
     Ok((fluid, stiffness))
@@ -788,15 +849,16 @@ fn read_body<const D: usize>(
         table.opt_number("volume"),
         table.opt_number("particle_volume"),
     ) {
-        (Some(_), Some(_)) => {
+        _ if table.has("volume") && table.has("particle_volume") => {
             return Err(table.error_at_key(
                 "particle_volume",
                 "\"volume\" and \"particle_volume\" say the same; give one",
             ));
         }
-        (Some(volume), None) => Volume::Body(volume),
-        (None, Some(volume)) => Volume::Particle(volume),
-        (None, None) => Volume::Source,
+        (Some(volume), _) => Volume::Body(volume),
+        (_, Some(volume)) => Volume::Particle(volume),
+        _ if table.has("volume") => Volume::Measured,
+        _ => Volume::Source,
     };
     let clip = domain.map_or(Bounds::EVERYTHING, |domain| Bounds {
         min: domain.min,
@@ -813,6 +875,7 @@ fn read_body<const D: usize>(
         material,
         source,
         velocity: table.formulas("velocity", Of::Place)?,
+        velocity_spread: table.opt_vector("velocity_spread").unwrap_or([0.0; D]),
         gradient: read_gradient(table)?,
         volume,
     })
@@ -917,7 +980,10 @@ fn read_list<const D: usize>(
             point(&clip.max)
         )));
     }
-    if volume == Volume::Source && list.volume.is_empty() && list.mass.is_empty() {
+    if matches!(volume, Volume::Source | Volume::Measured)
+        && list.volume.is_empty()
+        && list.mass.is_empty()
+    {
         return Err(table
             .error_at(
                 "particles",

@@ -1,7 +1,7 @@
 //! Neo-Hookean elasticity: rubber, and whatever is stretched far.
 //!
 //! The law's ln J ends at J = 0, but a simulated particle may be pressed past it. Below
-//! [`LOGARITHM_ENDS`] ln J is continued by its tangent, in the energy; stress follows, and is
+//! [`NeoHookean::logarithm_ends`] ln J is continued by its tangent, in the energy; stress follows, and is
 //! defined for every F. What is turned inside out is pushed back.
 
 use super::{
@@ -10,12 +10,12 @@ use super::{
 use crate::math::near_one::{ln_1p, minus_ln_1p};
 use crate::math::{Matrix, Real};
 
-/// The J below which ln J goes on as a straight line.
+/// The J below which ln J goes on as a straight line, unless told otherwise.
 pub const LOGARITHM_ENDS: f64 = 0.1;
 
 /// τ = μ(FFᵀ−I) + λ ln J I; Φ = ½μ(|F|²−d) − μ ln J + ½λ ln²J (MPM course 2016).
 ///
-/// For J < [`LOGARITHM_ENDS`] = a, ln J stands for ln a + (J−a)/a in Φ, and τ = (∂Φ/∂F) Fᵀ of it.
+/// For J < a = `logarithm_ends`, ln J stands for ln a + (J−a)/a in Φ, and τ = (∂Φ/∂F) Fᵀ of it.
 /// Speed of pressure waves at rest: √((λ+2μ)/ρ₀).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookean {
@@ -23,21 +23,32 @@ pub struct NeoHookean {
     pub lambda: f64,
     /// Shear modulus μ \[Pa\].
     pub mu: f64,
+    /// a, the J below which ln J goes on as a straight line; above 0.
+    pub logarithm_ends: f64,
 }
 
 impl NeoHookean {
     /// From Young's modulus \[Pa\] and Poisson's ratio, −1 < ν < ½.
     pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Self {
         let (lambda, mu) = lame(youngs_modulus, poisson_ratio);
-        Self { lambda, mu }
+        Self::from_lame(lambda, mu)
+    }
+
+    /// From Lamé's first parameter λ and the shear modulus μ \[Pa\].
+    pub fn from_lame(lambda: f64, mu: f64) -> Self {
+        Self {
+            lambda,
+            mu,
+            logarithm_ends: LOGARITHM_ENDS,
+        }
     }
 
     /// What is left of J − 1 above the end of the logarithm, and (J−a)/a below it, else 0.
     #[inline(always)]
-    fn split<R: Real>(jacobian_minus_one: R) -> (R, R) {
+    fn split<R: Real>(&self, jacobian_minus_one: R) -> (R, R) {
         let e = jacobian_minus_one;
-        let end = e.lit(LOGARITHM_ENDS - 1.0);
-        let beyond = (e - end).min(e.zero()) * e.lit(1.0 / LOGARITHM_ENDS);
+        let end = e.lit(self.logarithm_ends - 1.0);
+        let beyond = (e - end).min(e.zero()) * e.lit(1.0 / self.logarithm_ends);
         (e.max(end), beyond)
     }
 }
@@ -51,7 +62,7 @@ impl<const D: usize> ConstitutiveModel<D> for NeoHookean {
         strain: DisplacementGradient<R, D>,
         _: Matrix<R, D>,
     ) -> Matrix<R, D> {
-        let (e, beyond) = Self::split(strain.jacobian_minus_one());
+        let (e, beyond) = self.split(strain.jacobian_minus_one());
         let ln_j = ln_1p(e) + beyond;
         let (lambda, mu) = (ln_j.lit(self.lambda), ln_j.lit(self.mu));
         let pressure = lambda * ln_j * (beyond + beyond.one()) - mu * beyond;
@@ -70,7 +81,7 @@ impl<const D: usize> ConstitutiveModel<D> for NeoHookean {
     #[inline(always)]
     fn energy_density<R: Real>(&self, strain: DisplacementGradient<R, D>) -> R {
         let h = strain.h;
-        let (e, beyond) = Self::split(strain.jacobian_minus_one());
+        let (e, beyond) = self.split(strain.jacobian_minus_one());
         let ln_j = ln_1p(e) + beyond;
         let half = e.lit(0.5);
         // ½(|F|² − d) − ln J = tr H + ½|H|² − ln J, without its terms of first order: tr H is
@@ -80,7 +91,7 @@ impl<const D: usize> ConstitutiveModel<D> for NeoHookean {
             3 => h.determinant(),
             _ => e.zero(),
         };
-        let j_less_ln_j = minus_ln_1p(e) + beyond * e.lit(LOGARITHM_ENDS - 1.0);
+        let j_less_ln_j = minus_ln_1p(e) + beyond * e.lit(self.logarithm_ends - 1.0);
         let distortion =
             symmetric.squared_norm() - h.trace() * h.trace() * half - third + j_less_ln_j;
         distortion * e.lit(self.mu) + ln_j * ln_j * e.lit(0.5 * self.lambda)
@@ -90,7 +101,7 @@ impl<const D: usize> ConstitutiveModel<D> for NeoHookean {
     /// second derivative by J of what Φ has of ln J.
     #[inline(always)]
     fn wave_modulus<R: Real>(&self, strain: DisplacementGradient<R, D>) -> R {
-        let (e, beyond) = Self::split(strain.jacobian_minus_one());
+        let (e, beyond) = self.split(strain.jacobian_minus_one());
         let ln_j = ln_1p(e) + beyond;
         let (one, lambda, mu) = (ln_j.one(), ln_j.lit(self.lambda), ln_j.lit(self.mu));
         // Beyond the end of the logarithm, λ(J/a)² ≤ λ(1 + ((J−a)/a)²).

@@ -49,7 +49,7 @@ pub(crate) fn one_of_each() -> Vec<Material> {
         material(
             "rubber",
             800.0,
-            Model::NeoHookean(NeoHookean { lambda, mu }),
+            Model::NeoHookean(NeoHookean::from_lame(lambda, mu)),
         ),
         material(
             "snow",
