@@ -1,7 +1,7 @@
 //! Walls on their planes: waves see them where they are drawn, a body at rest stays, and what leaves
 //! a `separate` wall leaves as if there were none.
 
-use lahar::material::{Corotated, Eos, Fluid, JacobianUpdate, lame};
+use lahar::material::{Corotated, Fluid, lame};
 use lahar::particles::Field;
 use lahar::{
     Contact, Deformation, Domain, Instance, Material, Model, ParticleBatch, Setup, Sides, Simulate,
@@ -27,12 +27,8 @@ fn fluid(sound_speed: f64, tension: f64) -> Material {
         name: "fluid".into(),
         density: DENSITY,
         model: Model::Fluid(Fluid {
-            eos: Eos::Tait { gamma: 1.0 },
-            bulk_modulus: DENSITY * sound_speed * sound_speed,
-            viscosity: 0.0,
-            bulk_viscosity: 0.0,
             tension,
-            jacobian_update: JacobianUpdate::Trace,
+            ..Fluid::inviscid(DENSITY * sound_speed * sound_speed)
         }),
     }
 }
