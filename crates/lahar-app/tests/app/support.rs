@@ -1,6 +1,6 @@
 //! Scenes made by hand, so that the window's tests need no files.
 
-use lahar::material::{Eos, Fluid, JacobianUpdate};
+use lahar::material::{Eos, Fluid};
 use lahar::{
     Contact, Domain, Isa, Material, Model, ParticleBatch, Setup, Sides, Simulate, Simulation,
     Transfer, WallStyle,
@@ -151,11 +151,8 @@ where
         density: 1000.0,
         model: Model::Fluid(Fluid {
             eos: Eos::Tait { gamma: 7.0 },
-            bulk_modulus: 1.0e5,
             viscosity: changed.viscosity,
-            bulk_viscosity: 0.0,
-            tension: 0.0,
-            jacobian_update: JacobianUpdate::Trace,
+            ..Fluid::inviscid(1.0e5)
         }),
     };
     let mut setup = Setup::<D>::new(dx, vec![water]);
