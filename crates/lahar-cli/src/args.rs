@@ -40,6 +40,8 @@ pub(crate) enum Command {
     List(List),
     /// Show what a scene comes to: particles, nodes, memory, sound speed, time step and what limits it
     Show(Show),
+    /// Write a commented scene to start from
+    New(New),
     /// Print the JSON schema of scene files, for editors
     Schema,
     /// Print completions for a shell
@@ -153,6 +155,14 @@ pub(crate) struct Show {
     /// Print one JSON document
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Options of `new`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct New {
+    /// The file to write, like my.toml; one that is there is left alone
+    #[arg(value_name = "FILE")]
+    pub(crate) file: PathBuf,
 }
 
 /// Options of `completions`.

@@ -11,6 +11,7 @@ mod completions;
 mod error;
 mod interrupt;
 mod list;
+mod new;
 mod plan;
 mod progress;
 mod run;
@@ -55,6 +56,7 @@ fn execute(args: Args) -> Result<ExitCode, CliError> {
         Some(Command::Run(run)) => run::run(plan::Plan::from_args(&run)?, run.json),
         Some(Command::List(list)) => list::list(list.json),
         Some(Command::Show(show)) => show::show(&show),
+        Some(Command::New(args)) => new::new(&args.file),
         Some(Command::Schema) => schema::schema(),
         Some(Command::Completions(completions)) => completions::completions(completions.shell),
     }

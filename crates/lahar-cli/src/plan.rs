@@ -231,18 +231,32 @@ impl Plan {
         for (colour, material) in scenery.colours.iter_mut().zip(&self.scene.materials) {
             *colour = material.color.unwrap_or(*colour);
         }
-        let renderer = Renderer::new(scenery.clone(), style);
+        scenery.bodies = self.scene.bodies.iter().map(|body| body.color).collect();
+        let mut renderer = Renderer::new(scenery.clone(), style);
+        if camera.framed {
+            renderer = renderer.with_frame(camera.center, camera.height);
+        }
         let aspect = f64::from(width) / f64::from(height);
         let direction = camera.direction.map(|x| x as f32);
         if direction.iter().all(|x| *x == 0.0) {
             return renderer;
+        }
+        let angle = camera.field_of_view.to_radians() as f32;
+        if camera.framed {
+            return renderer.with_camera(Camera::framing(
+                camera.center,
+                camera.height,
+                scenery.up,
+                direction,
+                angle,
+            ));
         }
         renderer.with_camera(Camera::showing_from(
             scenery.bounds,
             scenery.up,
             aspect as f32,
             direction,
-            camera.field_of_view.to_radians() as f32,
+            angle,
         ))
     }
 

@@ -208,6 +208,89 @@ fn a_dry_run_writes_nothing() {
 }
 
 #[test]
+fn a_new_scene_runs_and_is_never_overwritten() {
+    let here = here();
+    code(&lahar(here.path(), &["new", "my.toml"]), 0);
+    let words = [
+        "run",
+        "my.toml",
+        "--frames=1",
+        "--format=none",
+        "--set",
+        "dx=0.1",
+    ];
+    code(&lahar(here.path(), &words), 0);
+    std::fs::write(here.path().join("my.toml"), "mine").unwrap();
+    let again = lahar(here.path(), &["new", "my.toml"]);
+    code(&again, 2);
+    assert!(errors(&again).contains("left as it is"));
+    assert_eq!(std::fs::read(here.path().join("my.toml")).unwrap(), b"mine");
+    code(&lahar(here.path(), &["new", "no/such/my.toml"]), 2);
+    code(&lahar(here.path(), &["new"]), 2);
+    code(&lahar(here.path(), &["new", "."]), 2);
+}
+
+/// One clear error, exit code 2 and no panic, whatever the file is.
+#[test]
+fn broken_scenes_are_code_2() {
+    let here = here();
+    let file = |name: &str, bytes: &[u8]| {
+        std::fs::write(here.path().join(name), bytes).unwrap();
+        name.to_owned()
+    };
+    let good = String::from_utf8(lahar_io::builtin::starter().as_bytes().to_vec()).unwrap();
+    let with = |name: &str, from: &str, to: &str| {
+        assert!(good.contains(from), "{from}");
+        file(name, good.replacen(from, to, 1).as_bytes())
+    };
+    let mut scenes = vec![
+        file("empty.toml", b""),
+        file("junk.toml", &[0x80, 0xff, 0, 7, 7]),
+        file("half.toml", &good.as_bytes()[..good.len() * 2 / 3]),
+        with("key.toml", "duration", "durration"),
+        with("dx.toml", "dx = 0.02", "dx = -0.02"),
+        with("many.toml", "dx = 0.02", "dx = 2e-7"),
+        with(
+            "formula.toml",
+            "velocity = [-1.0, 0.0]",
+            "velocity = [\"1 +\", 0.0]",
+        ),
+        with("outside.toml", "center = [1.5, 0.5]", "center = [9.5, 0.5]"),
+        with(
+            "list.toml",
+            "shape = { ball = { center = [1.5, 0.5], radius = 0.2 } }",
+            "particles = \"none.ply\"",
+        ),
+        ".".to_owned(),
+        "no-such-scene".to_owned(),
+        String::new(),
+    ];
+    if cfg!(unix) {
+        scenes.push("/dev/zero".to_owned());
+        scenes.push("/dev/null".to_owned());
+    }
+    for scene in &scenes {
+        for words in [
+            &["show", scene][..],
+            &["show", "--json", scene],
+            &["run", "--dry-run", scene],
+            &["run", "-o", "never", scene],
+        ] {
+            let output = lahar(here.path(), words);
+            code(&output, 2);
+            let errors = errors(&output);
+            assert!(errors.starts_with("error: "), "{scene}: {errors}");
+            assert_eq!(errors.matches("error: ").count(), 1, "{scene}: {errors}");
+            assert!(!errors.contains("panicked"), "{scene}: {errors}");
+            if words.contains(&"--json") {
+                assert!(json(&output)["error"].is_string());
+            }
+        }
+    }
+    assert!(!here.path().join("never").exists());
+}
+
+#[test]
 fn the_same_run_gives_the_same_files() {
     let here = here();
     for (folder, threads) in [("a", "--threads=1"), ("b", "--threads=3")] {

@@ -18,14 +18,14 @@ pub struct Builtin {
 }
 
 macro_rules! scenes {
-    ($($name:literal $(in $folder:literal)? $dimension:literal $title:literal $summary:literal;)*) => {
+    ($($name:literal $(in $folder:literal)? $dimension:literal $title:literal $summary:literal $(with $file:literal)?;)*) => {
         &[$(Builtin {
             name: $name,
             title: $title,
             summary: $summary,
             dimension: $dimension,
             text: include_str!(concat!("../scenes/", $($folder, "/",)? $name, ".toml")),
-            files: &[],
+            files: &[$(($file, include_str!(concat!("../scenes/", $file))))?],
         }),*]
     };
 }
@@ -38,6 +38,20 @@ const SCENES: &[Builtin] = scenes! {
     "water-jelly-snow-3d" 3 "Water, jelly and snow in 3D" "Cubes of water and jelly and a ball of snow fall into a pool.";
     "jelly-drop" 2 "Jelly drop" "Jellies of three firmnesses fall: the soft one spreads, the firm one jumps.";
     "snowball" 2 "Snowball" "A thrown snowball bursts on a wall.";
+    "obstacle" 2 "Dam break with elastic plates" "A wave bends two elastic plates and shoots over them.";
+    "rain" 2 "Rain" "Rows of drops fall into a pool.";
+    "jelly-letters" 2 "Letters of jelly" "The word MPM in jelly falls into a pool and floats.";
+    "honey" 2 "Honey" "A thread of honey folds and piles up on a plate.";
+    "sloshing" 2 "Sloshing tank" "A tank is shaken at the period of its first wave; colours are speeds.";
+    "snow-castle" 2 "Snow castle" "A ball of rubber breaks through a castle of snow.";
+    "snowballs" 2 "Snowballs" "Two snowballs meet in the air.";
+    "gears" 2 "Jelly gears" "A spinning wheel of jelly sets others going, without weight.";
+    "planet" 2 "Planet and moon of water" "A moon of water falls on a planet of water, held together by a pull towards the middle.";
+    "galaxy" 2 "Galaxy of dust" "A two-coloured disc of dust winds itself into spirals.";
+    "taylor-green" 2 "Taylor-Green whirls" "Whirls in a periodic square stir two dyes.";
+    "knot-3d" 3 "Knot of jelly in 3D" "A knot of jelly, made from a mesh, falls and bounces." with "knot-3d.obj";
+    "drops-3d" 3 "Two drops in 3D" "Two drops of water meet off centre, without gravity.";
+    "whirlpool-3d" 3 "Whirlpool in 3D" "A stirred basin: the surface sinks in the middle and rises at the walls.";
     "mpm88" in "lineage" 2 "mpm88" "The fluid square of Taichi's mpm88.py, with its constants, walls and time step.";
     "mpm88-corrected" in "lineage" 2 "mpm88, corrected" "The same with walls on their planes, and without holes and strings.";
     "mpm99" in "lineage" 2 "mpm99" "Taichi's mpm99.py: liquid, jelly and snow fall into a box under strong gravity.";
@@ -70,6 +84,11 @@ const VALIDATION: &[Builtin] = &[Builtin {
         include_str!("../scenes/validation/k7-mpm88-regression.csv"),
     )],
 }];
+
+/// A commented scene to start an own one from.
+pub fn starter() -> &'static str {
+    include_str!("../scenes/starter.toml")
+}
 
 /// The scenes to show, the default first.
 pub fn list() -> &'static [Builtin] {

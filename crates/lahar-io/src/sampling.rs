@@ -58,8 +58,18 @@ impl Random {
 }
 
 /// The number that random and Poisson sampling place, and about the number that the others do.
-pub fn expected_count<const D: usize>(region: &Region<D>, spacing: f64) -> f64 {
-    region.volume() / spacing.powi(D as i32)
+pub fn expected_count<const D: usize>(region: &Region<D>, spacing: f64, sampling: Sampling) -> f64 {
+    let cell: f64 = match sampling {
+        Sampling::Random | Sampling::Poisson => spacing.powi(D as i32),
+        // The lattice is fitted to the bounds.
+        Sampling::Lattice | Sampling::Jittered => {
+            let size = lattice_size(region, spacing);
+            (0..D)
+                .map(|i| region.bounds().side(i) / size[i] as f64)
+                .product()
+        }
+    };
+    region.volume() / cell
 }
 
 /// Positions \[m\] in `region`, `spacing` \[m\] apart on average; for random and Poisson sampling
@@ -74,7 +84,8 @@ pub fn sample<const D: usize>(
     if !(region.volume() > 0.0) {
         return Vec::new();
     }
-    let count = count.unwrap_or_else(|| expected_count(region, spacing).round() as usize);
+    let count =
+        count.unwrap_or_else(|| expected_count(region, spacing, Sampling::Random).round() as usize);
     match sampling {
         Sampling::Lattice => lattice(region, spacing, || 0.5),
         Sampling::Jittered => lattice(region, spacing, || random.unit()),
@@ -229,7 +240,7 @@ mod tests {
                 Bounds::EVERYTHING,
             );
             let positions = sample(&ball, 0.05, None, sampling, &mut Random::new(1, 0));
-            let expected = expected_count(&ball, 0.05);
+            let expected = expected_count(&ball, 0.05, sampling);
             assert!(
                 (positions.len() as f64 - expected).abs() < 0.02 * expected,
                 "{sampling:?}: {} of {expected}",

@@ -46,6 +46,33 @@ fn every_scene_reads_and_builds() {
 }
 
 #[test]
+fn the_starter_is_a_scene() {
+    let scene = Scene::parse(builtin::starter(), "my.toml", &[]);
+    let built = scene
+        .unwrap_or_else(|error| panic!("{error}"))
+        .build(Isa::Portable);
+    let built = built.unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(built.warnings, [] as [&str; 0]);
+    // What is commented out is sound as well, a line at a time.
+    let mut tried = 0;
+    for line in builtin::starter().lines() {
+        let Some(key) = line.strip_prefix("# ").filter(|line| line.contains(" = ")) else {
+            continue;
+        };
+        let name = key.split(" = ").next().unwrap_or_default();
+        let mut text = builtin::starter().replacen(line, key, 1);
+        match name {
+            "drag" => text = text.replace("# [[forces]]", "[[forces]]"),
+            "shape" => text = text.replace("\nshape = { ball", "\n# shape = { ball"),
+            _ => {}
+        }
+        Scene::parse(&text, "my.toml", &[]).unwrap_or_else(|error| panic!("{key}: {error}"));
+        tried += 1;
+    }
+    assert!(tried >= 7, "{tried}");
+}
+
+#[test]
 fn the_default_scene_comes_first() {
     assert_eq!(builtin::list()[0].name, "dam-break");
     let scene = Scene::load("dam-break", &[]).unwrap();
@@ -127,4 +154,66 @@ fn the_mpm88_regression_of_the_taichi_project_holds() {
             "moment {power} is {moment}, {wanted} is published"
         );
     }
+}
+
+/// A tube of radius 0.6 around the trefoil knot (sin t + 2 sin 2t, cos t − 2 cos 2t, −sin 3t), as an OBJ file.
+fn trefoil() -> String {
+    const ALONG: u32 = 96;
+    const AROUND: u32 = 12;
+    let tau = core::f64::consts::TAU;
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    };
+    let unit = |a: [f64; 3]| {
+        let length = libm::sqrt(a.iter().map(|x| x * x).sum());
+        a.map(|x| x / length)
+    };
+    let (sin, cos) = (libm::sin, libm::cos);
+    let mut text = "# A trefoil knot: written by crates/lahar-io/tests/builtin.rs.\n".to_owned();
+    for i in 0..ALONG {
+        let t = tau * f64::from(i) / f64::from(ALONG);
+        let middle = [
+            sin(t) + 2.0 * sin(2.0 * t),
+            cos(t) - 2.0 * cos(2.0 * t),
+            -sin(3.0 * t),
+        ];
+        let along = [
+            cos(t) + 4.0 * cos(2.0 * t),
+            -sin(t) + 4.0 * sin(2.0 * t),
+            -3.0 * cos(3.0 * t),
+        ];
+        // Across the tube: away from the knot's axis, and what is square to both.
+        let outwards = [sin(2.0 * t), -cos(2.0 * t), 0.0];
+        let side = unit(cross(along, outwards));
+        let up = unit(cross(side, along));
+        for j in 0..AROUND {
+            let angle = tau * f64::from(j) / f64::from(AROUND);
+            let p: [f64; 3] = core::array::from_fn(|k| {
+                middle[k] + 0.6 * (cos(angle) * side[k] + sin(angle) * up[k])
+            });
+            writeln!(text, "v {:.4} {:.4} {:.4}", p[0], p[1], p[2]).unwrap();
+        }
+    }
+    for i in 0..ALONG {
+        for j in 0..AROUND {
+            let at = |i: u32, j: u32| i % ALONG * AROUND + j % AROUND + 1;
+            let quad = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            writeln!(text, "f {} {} {} {}", quad[0], quad[1], quad[2], quad[3]).unwrap();
+        }
+    }
+    text
+}
+
+/// With `LAHAR_UPDATE=1` in the environment the file is written.
+#[test]
+fn the_mesh_of_the_knot_is_its_formula() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/knot-3d.obj");
+    if std::env::var_os("LAHAR_UPDATE").is_some() {
+        std::fs::write(&path, trefoil()).unwrap();
+    }
+    assert!(std::fs::read_to_string(path).unwrap() == trefoil());
 }

@@ -56,6 +56,26 @@ impl Camera {
         Self::showing_from(bounds, up, aspect, direction, WIDE)
     }
 
+    /// So far from `center` in `direction` that `height` \[m\] fill the angle there \[rad\].
+    pub fn framing(
+        center: [f64; 3],
+        height: f64,
+        up: usize,
+        direction: [f32; 3],
+        angle: f32,
+    ) -> Self {
+        let target = center.map(|x| x as f32);
+        let distance = 0.5 * height as f32 / (0.5 * angle).tan();
+        let mut up_vector = [0.0; 3];
+        up_vector[up] = 1.0;
+        Self {
+            eye: add_scaled(target, unit(direction), distance),
+            target,
+            up: up_vector,
+            angle,
+        }
+    }
+
     /// The same from another direction (towards the camera), and with another angle between the lower and the upper
     /// edge of the picture \[rad\].
     pub fn showing_from(

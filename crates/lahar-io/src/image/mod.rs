@@ -89,6 +89,8 @@ pub struct Scenery {
     pub background: Colour,
     /// Colours of the materials, by index; those beyond the end take them again from the start.
     pub colours: Vec<Colour>,
+    /// Colours of bodies that have their own, by number.
+    pub bodies: Vec<Option<Colour>>,
 }
 
 impl Scenery {
@@ -115,6 +117,7 @@ impl Scenery {
             speed: (pull * (bounds.1[up] - bounds.0[up]).max(0.0)).sqrt(),
             background: BACKGROUND,
             colours: model_colours(models),
+            bodies: Vec::new(),
         }
     }
 }
@@ -146,7 +149,7 @@ fn around(snapshot: &Snapshot, dx: f64) -> ([f64; 3], [f64; 3]) {
 /// What colours mean.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Colouring {
-    /// The material; brighter where it is fast.
+    /// The material, or the body's own colour; brighter where it is fast.
     #[default]
     Material,
     /// The body.
@@ -225,6 +228,15 @@ impl Renderer {
         self
     }
 
+    /// Shows `height` \[m\] of the scene around `center` \[m\] instead of all of it; nothing in 3D.
+    #[must_use]
+    pub fn with_frame(mut self, center: [f64; 3], height: f64) -> Self {
+        if let View::Plane(plane) = &mut self.view {
+            plane.frame(&self.style, [center[0], center[1]], height);
+        }
+        self
+    }
+
     /// Draws one moment.
     pub fn render(&self, snapshot: &Snapshot) -> Picture {
         let particles = Drawn::from(snapshot, &self.scenery, self.style.colouring);
@@ -276,16 +288,19 @@ impl Drawn {
             },
         );
         let index = |field: Field| numbers(field).unwrap_or_else(|| vec![0.0; n]);
-        let colours: Vec<[[f32; 3]; 2]> = scenery
-            .colours
+        let shades = |colour| {
+            [
+                palette::linear(colour),
+                palette::linear(palette::bright(colour)),
+            ]
+        };
+        let colours: Vec<[[f32; 3]; 2]> = scenery.colours.iter().copied().map(shades).collect();
+        let own: Vec<Option<[[f32; 3]; 2]>> = scenery
+            .bodies
             .iter()
-            .map(|&colour| {
-                [
-                    palette::linear(colour),
-                    palette::linear(palette::bright(colour)),
-                ]
-            })
+            .map(|colour| colour.map(shades))
             .collect();
+        let of_body = |body: f32| own.get(body as usize).copied().flatten();
         let of_index = |i: f32| colours[i as usize % colours.len().max(1)];
         let colour = if colours.is_empty() {
             vec![[1.0; 3]; n]
@@ -300,8 +315,10 @@ impl Drawn {
                     index(Field::Material)
                         .iter()
                         .zip(&speed)
-                        .map(|(&material, &speed)| {
-                            let [base, bright] = of_index(material);
+                        .zip(index(Field::Body))
+                        .map(|((&material, &speed), body)| {
+                            let [base, bright] =
+                                of_body(body).unwrap_or_else(|| of_index(material));
                             let part = (speed * scale).clamp(0.0, 1.0);
                             palette::mix(base, bright, part * part)
                         })
@@ -310,7 +327,8 @@ impl Drawn {
                 Colouring::Body => index(Field::Body)
                     .iter()
                     .map(|&body| {
-                        palette::linear(palette::BODIES[body as usize % palette::BODIES.len()])
+                        let other = palette::BODIES[body as usize % palette::BODIES.len()];
+                        of_body(body).map_or_else(|| palette::linear(other), |[base, _]| base)
                     })
                     .collect(),
                 Colouring::Speed(largest) => on_scale(&speed, 0.0, largest as f32),
@@ -362,7 +380,40 @@ mod tests {
             speed: 0.0,
             background: BACKGROUND,
             colours: model_colours(&["fluid", "corotated"]),
+            bodies: Vec::new(),
         }
+    }
+
+    #[test]
+    fn bodies_have_their_own_colours() {
+        let mut scenery = scenery(2);
+        scenery.bodies = vec![None, Some([250, 10, 20])];
+        let mut moment = snapshot(2, &[0.5, 0.5, 1.5, 0.5], 0.09, &[0, 0]);
+        moment.columns.push((Field::Body, Data::U32(vec![0, 1])));
+        for colouring in [Colouring::Material, Colouring::Body] {
+            let style = Style {
+                colouring,
+                ..Style::default()
+            };
+            let picture = Renderer::new(scenery.clone(), style).render(&moment);
+            assert!(
+                count(&picture, |p| p == [250, 10, 20]) > 100,
+                "{colouring:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_frame_shows_less() {
+        let moment = snapshot(2, &[0.5, 0.5], 0.01, &[0]);
+        let renderer = Renderer::new(scenery(2), Style::default());
+        let is_drawn = |p: [u8; 3]| p != BACKGROUND;
+        let all = renderer.clone().render(&moment);
+        let near = renderer.with_frame([0.5, 0.5, 0.0], 0.25).render(&moment);
+        assert_eq!((near.width, near.height), (640, 480));
+        assert!(count(&near, is_drawn) > 10 * count(&all, is_drawn) / 2);
+        let middle = &near.rgb[(240 * 640 + 320) * 3..][..3];
+        assert_ne!(middle, BACKGROUND);
     }
 
     fn count(picture: &Picture, wanted: impl Fn([u8; 3]) -> bool) -> usize {

@@ -54,6 +54,18 @@ impl Plane {
         }
     }
 
+    /// Shows `height` \[m\] around `center` \[m\], on the whole of the picture.
+    pub(super) fn frame(&mut self, style: &Style, center: [f64; 2], height: f64) {
+        let pixels = f64::from(style.height) / height;
+        self.width = style.width as usize / 2 * 2;
+        self.height = style.height as usize / 2 * 2;
+        self.scale = pixels * f64::from(style.samples);
+        self.corner = [
+            center[0] - 0.5 * self.width as f64 / pixels,
+            center[1] + 0.5 * self.height as f64 / pixels,
+        ];
+    }
+
     pub(super) fn render(&self, particles: &Drawn) -> Picture {
         let (columns, rows) = (self.width * self.samples, self.height * self.samples);
         // Sum of bumps, then of bump × colour.

@@ -272,6 +272,7 @@ mod tests {
             speed: 1.0,
             background: BACKGROUND,
             colours: model_colours(&["fluid"]),
+            bodies: Vec::new(),
         };
         let renderer = Renderer::new(
             scenery,

@@ -116,6 +116,8 @@ pub struct Camera {
     pub center: [f64; 3],
     /// Height of the scene that the picture shows, at the centre \[m\].
     pub height: f64,
+    /// Whether the scene gives centre or height itself; else they show all of it.
+    pub framed: bool,
     /// From the centre to the camera; 3D only.
     pub direction: [f64; 3],
     /// Angle between the picture's lower and upper edge \[degrees\]; 3D only.
@@ -611,6 +613,7 @@ fn read_camera<const D: usize>(scene: &Reader<'_>, plan: &Plan<D>) -> Result<Cam
         } else {
             10.0 * plan.dx
         }),
+        framed: table.has("center") || table.has("height"),
         direction: table
             .opt_vector::<3>("direction")
             .unwrap_or([0.0, 0.0, 1.0]),

@@ -99,8 +99,11 @@ impl<const D: usize> Body<D> {
                 count: Some(count), ..
             } => *count as f64,
             Source::Shape {
-                region, spacing, ..
-            } => expected_count(region, *spacing),
+                region,
+                spacing,
+                sampling,
+                ..
+            } => expected_count(region, *spacing, *sampling),
             Source::List(list) => list.position.len() as f64,
         }
     }
