@@ -1,5 +1,6 @@
 //! Forces besides gravity and stress: against formulas, against the oracle, and by their bits.
 
+#[expect(dead_code, reason = "other tests use the rest")]
 mod common;
 #[expect(dead_code, reason = "other tests use the rest")]
 mod engine;
