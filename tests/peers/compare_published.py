@@ -41,15 +41,23 @@ def start(scene, kind, seed):
     return made
 
 
-def compare(program, scene, precision, kinds, steps, seed):
-    rows = []
+def compare(program, scene, precision, kinds, steps, itself, seed):
+    rows, of_itself = [], []
     for number, kind in enumerate(kinds):
         bodies = start(scene, kind, seed + number)
         ours = lahar.run(program, scene, bodies, steps, precision)
         whole = [np.concatenate([body[key] for body in bodies.values()]) for key in ("position", "velocity")]
         theirs = PROGRAMS[scene](*whole).frames(steps)
         rows += [((kind, step), lahar.differences(ours[step], theirs[step])) for step in steps]
+        if itself:
+            # One rounding away, in double or in single precision.
+            real = np.float64 if precision == "f64" else np.float32
+            beside = np.nextafter(whole[0].astype(real), real(1e9)).astype(np.float64)
+            other = PROGRAMS[scene](beside, whole[1]).frames(steps)
+            of_itself += [((kind, step), lahar.differences(other[step], theirs[step])) for step in steps]
     lahar.table(f"{scene}, {precision}: ours and the published steps", rows)
+    if itself:
+        lahar.table(f"{scene}, {precision}: the published steps, and these from a start one rounding away", of_itself)
 
 
 def main():
@@ -59,11 +67,12 @@ def main():
     words.add_argument("--precision", nargs="+", default=["f64", "f32"], choices=["f64", "f32"])
     words.add_argument("--starts", nargs="+", default=STARTS, choices=STARTS)
     words.add_argument("--steps", nargs="+", type=int, default=[10, 50, 100, 200, 300], help="substeps to compare at; multiples of the first")
+    words.add_argument("--itself", action="store_true", help="also the published steps from a start one rounding away")
     words.add_argument("--seed", type=int, default=1)
     given = words.parse_args()
     for scene in given.scenes:
         for precision in given.precision:
-            compare(given.lahar, scene, precision, given.starts, given.steps, given.seed)
+            compare(given.lahar, scene, precision, given.starts, given.steps, given.itself, given.seed)
 
 
 if __name__ == "__main__":
