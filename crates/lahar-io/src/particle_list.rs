@@ -371,6 +371,7 @@ fn fields(start: usize, line: &str) -> impl Iterator<Item = (usize, &str)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn reads_columns_in_any_order() {
@@ -414,6 +415,24 @@ mod tests {
         assert_eq!(error("x,y,vx\n").2, "there is no column \"vy\"");
         assert_eq!(error("x,vy\n").2, "there is no column \"y\"");
         assert_eq!(error("").0, 0);
+    }
+
+    proptest! {
+        #[test]
+        fn altered_text_never_panics(cuts in proptest::collection::vec((0_usize..200, 0_usize..9, "[-0-9a-zéJF,. \n\r#e+]{0,6}"), 1..4)) {
+            let mut text = "# start\nx,y,vx,vy,volume,F11,F12,F21,F22\n1,2,3,4,1e-3,1,0,0,1\n2,2,3,4,1e-3,1,0,0,1\n".to_owned();
+            for (at, length, piece) in cuts {
+                let mut start = at % text.len();
+                while !text.is_char_boundary(start) { start -= 1; }
+                let mut end = (start + length).min(text.len());
+                while !text.is_char_boundary(end) { end += 1; }
+                text.replace_range(start..end, &piece);
+                text.push('.');
+            }
+            for error in [parse_csv::<2>(&text, "a.csv").err(), parse_csv::<3>(&text, "a.csv").err()].into_iter().flatten() {
+                error.render(true);
+            }
+        }
     }
 
     #[test]

@@ -174,3 +174,40 @@ fn cut_shapes_are_counted() {
         );
     }
 }
+
+/// What fits into the domain is not said to be cut off: bounds of turned shapes are tight.
+#[test]
+fn turned_shapes_are_not_cut_off() {
+    for (dimension, shape) in [
+        (
+            2,
+            "ball = { center = [1.0, 1.0], radius = 0.95 }, rotate = 45.0",
+        ),
+        (
+            2,
+            "box = { min = [0.4, 0.4], max = [1.6, 1.6] }, rotate = 45.0",
+        ),
+        (
+            2,
+            "capsule = { from = [0.2, 1.0], to = [1.8, 1.0], radius = 0.15 }, rotate = 45.0",
+        ),
+        (
+            3,
+            "cylinder = { from = [1, 0.01, 1], to = [1, 1.99, 1], radius = 0.9 }",
+        ),
+        (
+            3,
+            "union = [{ ball = { center = [1, 1, 1], radius = 0.95 } }], rotate = [30, 40, 50]",
+        ),
+    ] {
+        let corner = |x: f64| format!("{:?}", vec![x; dimension]);
+        let text = format!(
+            "dimension = {dimension}\ndx = 0.1\n[domain]\nmin = {}\nmax = {}\n[materials.jelly]\npreset = \"jelly\"\n\
+             [[bodies]]\nmaterial = \"jelly\"\nshape = {{ {shape} }}\n",
+            corner(0.0),
+            corner(2.0)
+        );
+        let scene = Scene::parse(&text, "a", &[]).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(scene.warnings, [] as [&str; 0], "{shape}");
+    }
+}

@@ -83,6 +83,11 @@ impl Mesh {
         (self.min, self.max)
     }
 
+    /// Its corners \[m\].
+    pub(super) fn vertices(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        self.vertices.iter().copied()
+    }
+
     /// Number of triangles.
     pub fn faces(&self) -> usize {
         self.faces.len()

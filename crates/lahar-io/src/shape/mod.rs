@@ -158,11 +158,26 @@ impl<const D: usize> Shape<D> {
             },
             Self::HalfSpace { .. } => Bounds::EVERYTHING,
             Self::Rod {
-                from, to, radius, ..
-            } => Bounds {
-                min: core::array::from_fn(|i| from[i].min(to[i]) - radius),
-                max: core::array::from_fn(|i| from[i].max(to[i]) + radius),
-            },
+                from,
+                to,
+                radius,
+                round,
+            } => {
+                let squared: f64 = (0..D).map(|i| (to[i] - from[i]).powi(2)).sum();
+                // Half of a flat end's extent along an axis.
+                let reach = |i: usize| {
+                    let along = (to[i] - from[i]).powi(2);
+                    if *round || squared == 0.0 {
+                        *radius
+                    } else {
+                        radius * (1.0 - along / squared).max(0.0).sqrt()
+                    }
+                };
+                Bounds {
+                    min: core::array::from_fn(|i| from[i].min(to[i]) - reach(i)),
+                    max: core::array::from_fn(|i| from[i].max(to[i]) + reach(i)),
+                }
+            }
             Self::Mesh(mesh) => {
                 let (min, max) = mesh.bounds();
                 Bounds {
@@ -229,24 +244,77 @@ impl<const D: usize> Shape<D> {
         }
     }
 
-    /// The shape after `motion`.
+    /// The shape after `motion`: of the same kind where there is one, so that its bounds are tight.
     #[must_use]
     pub fn moved(self, motion: Motion<D>) -> Self {
-        let before = self.bounds();
-        let bounds = if before.volume().is_finite() {
-            let corners: Vec<Bounds<D>> = before
-                .corners()
-                .map(|corner| motion.forth(&corner))
-                .map(|p| Bounds { min: p, max: p })
-                .collect();
-            Bounds::around(&corners)
-        } else {
-            Bounds::EVERYTHING
+        let all = |shapes: Vec<Self>| {
+            shapes
+                .into_iter()
+                .map(|shape| shape.moved(motion))
+                .collect()
         };
-        Self::Moved {
-            shape: Box::new(self),
-            motion,
-            bounds,
+        match (self, motion.factor()) {
+            (Self::Ball { center, radius }, Some(factor)) => Self::Ball {
+                center: motion.forth(&center),
+                radius: radius * factor,
+            },
+            (
+                Self::Rod {
+                    from,
+                    to,
+                    radius,
+                    round,
+                },
+                Some(factor),
+            ) => Self::Rod {
+                from: motion.forth(&from),
+                to: motion.forth(&to),
+                radius: radius * factor,
+                round,
+            },
+            (Self::HalfSpace { point, normal }, Some(_)) => Self::HalfSpace {
+                point: motion.forth(&point),
+                normal: motion.turned(&normal),
+            },
+            (Self::Polygon { points }, _) => Self::Polygon {
+                points: points.iter().map(|p| motion.forth(p)).collect(),
+            },
+            (Self::Box { min, max }, _) if !motion.turns() => Self::Box {
+                min: motion.forth(&min),
+                max: motion.forth(&max),
+            },
+            (Self::Box { min, max }, _) if D == 2 => {
+                let corners: Vec<[f64; D]> = Bounds { min, max }.corners().collect();
+                let around = [0, 1, 3, 2];
+                Self::Polygon {
+                    points: around.map(|i| motion.forth(&corners[i])).to_vec(),
+                }
+            }
+            (Self::Union(shapes), _) => Self::Union(all(shapes)),
+            (Self::Intersection(shapes), _) => Self::Intersection(all(shapes)),
+            (Self::Difference(shapes), _) => Self::Difference(all(shapes)),
+            (shape, _) => {
+                let points: Vec<[f64; D]> = match &shape {
+                    Self::Mesh(mesh) => mesh
+                        .vertices()
+                        .map(|v| core::array::from_fn(|i| v[i.min(2)]))
+                        .collect(),
+                    _ => shape.bounds().corners().collect(),
+                };
+                let bounds = if shape.bounds().volume().is_finite() {
+                    Self::Polygon {
+                        points: points.iter().map(|p| motion.forth(p)).collect(),
+                    }
+                    .bounds()
+                } else {
+                    Bounds::EVERYTHING
+                };
+                Self::Moved {
+                    shape: Box::new(shape),
+                    motion,
+                    bounds,
+                }
+            }
         }
     }
 

@@ -63,6 +63,22 @@ impl<const D: usize> Motion<D> {
         })
     }
 
+    /// The one factor of all axes, if there is one.
+    pub(super) fn factor(&self) -> Option<f64> {
+        let first = self.scale[0];
+        self.scale.iter().all(|s| *s == first).then_some(first)
+    }
+
+    /// Whether it turns anything.
+    pub(super) fn turns(&self) -> bool {
+        (0..D).any(|i| (0..D).any(|j| self.rotation[i][j] != f64::from(u8::from(i == j))))
+    }
+
+    /// A direction after the turn.
+    pub(super) fn turned(&self, direction: &[f64; D]) -> [f64; D] {
+        core::array::from_fn(|i| (0..D).map(|j| self.rotation[i][j] * direction[j]).sum())
+    }
+
     /// How much volumes grow.
     pub(super) fn stretch(&self) -> f64 {
         self.scale.iter().product::<f64>().abs()

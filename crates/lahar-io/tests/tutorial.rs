@@ -1,0 +1,80 @@
+//! docs/tutorial.md: its scenes run, and what it shows of errors and figures is what one gets.
+
+use lahar::Isa;
+use lahar_io::scene::Scene;
+
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tutorial.md");
+
+fn page() -> String {
+    std::fs::read_to_string(PAGE).expect("the tutorial is there")
+}
+
+/// Its blocks of TOML.
+fn scenes(page: &str) -> Vec<&str> {
+    page.split("```toml\n")
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next())
+        .collect()
+}
+
+#[test]
+fn its_scenes_run_without_warnings() {
+    let page = page();
+    assert_eq!(scenes(&page).len(), 5);
+    for text in scenes(&page) {
+        let scene = Scene::parse(text, "my.toml", &[]);
+        let scene = scene.unwrap_or_else(|error| panic!("{error}\n\n{text}"));
+        let mut built = scene
+            .build(Isa::Portable)
+            .unwrap_or_else(|error| panic!("{error}\n\n{text}"));
+        assert_eq!(built.warnings, [] as [&str; 0], "{text}");
+        let end = 2.0 / scene.frame_rate;
+        let done = built.simulation.advance_to(end).expect("it runs");
+        assert!(done.substeps > 0);
+    }
+}
+
+#[test]
+fn the_error_is_the_one_shown() {
+    let page = page();
+    let text = scenes(&page)[0].replace("shape =", "shpe =");
+    let error = Scene::parse(&text, "my.toml", &[]).unwrap_err();
+    for line in error.render(false).lines() {
+        assert!(page.contains(&format!("    {line}\n")), "{error}");
+    }
+}
+
+#[test]
+fn the_first_scene_has_as_many_particles_as_it_says() {
+    let page = page();
+    let scene = Scene::parse(scenes(&page)[0], "my.toml", &[]).expect("it is a scene");
+    let built = scene.build(Isa::Portable).expect("it builds");
+    let count = built.simulation.particle_count();
+    assert!(
+        page.contains(&format!("It has {count} particles")),
+        "{count}"
+    );
+}
+
+/// The lines that it tells to replace are in the example, and the names that it uses exist.
+#[test]
+fn the_law_is_the_examples() {
+    let example = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../lahar/examples/custom_material.rs"
+    );
+    let example = std::fs::read_to_string(example).expect("the example is there");
+    assert!(example.contains("let rate = gradient + gradient.transpose();\n"));
+    assert!(example.contains("struct KelvinVoigt"));
+    let page = page();
+    for name in [
+        "kirchhoff_stress",
+        "advance",
+        "energy_density",
+        "wave_modulus",
+        "viscosity",
+    ] {
+        assert!(example.contains(&format!("fn {name}")), "{name}");
+        assert!(page.contains(&format!("| `{name}` |")), "{name}");
+    }
+}
