@@ -8,6 +8,7 @@ mod mesh_file;
 pub mod npz;
 pub mod output;
 pub mod particle_list;
+pub mod plot;
 mod ply;
 pub mod sampling;
 pub mod scene;

@@ -7,6 +7,7 @@
 //! ```
 //! Everything a film must not change between frames (view, colours, ranges) is decided once, by [`Renderer::new`].
 
+mod beside;
 mod camera;
 mod film;
 mod palette;
@@ -19,6 +20,7 @@ use std::path::Path;
 
 use lahar::{Field, Simulate, Snapshot};
 
+pub use beside::beside;
 pub use camera::Camera;
 pub use film::Film;
 pub use palette::{BACKGROUND, Colour, colour_map, model_colours};
@@ -57,6 +59,27 @@ impl Picture {
         let mut writer = encoder.write_header()?;
         writer.write_image_data(&self.rgb)?;
         Ok(writer.finish()?)
+    }
+
+    /// Reads one that [`Self::write_png`] has written.
+    ///
+    /// # Errors
+    /// If it is not there, or is no PNG of eight bits a channel and three channels.
+    pub fn load_png(path: impl AsRef<Path>) -> io::Result<Self> {
+        let decoder = png::Decoder::new(io::BufReader::new(File::open(path)?));
+        let mut reader = decoder.read_info()?;
+        let (width, height) = reader.info().size();
+        let is_rgb = reader.output_color_type() == (png::ColorType::Rgb, png::BitDepth::Eight);
+        let bytes = reader.output_buffer_size().filter(|_| is_rgb);
+        let Some(bytes) = bytes else {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidData,
+                "not a PNG of eight bits a channel and three channels",
+            ));
+        };
+        let mut rgb = vec![0; bytes];
+        reader.next_frame(&mut rgb)?;
+        Ok(Self { width, height, rgb })
     }
 
     /// Writes it as a PNG file at `path`.

@@ -14,6 +14,7 @@ mod folder;
 mod frames;
 mod record;
 mod recording;
+mod table;
 mod writer;
 
 use std::fmt;
@@ -26,6 +27,7 @@ pub use folder::RunFolder;
 pub use frames::{frame_name, write_frame};
 pub use record::{PhaseSeconds, Record, Status};
 pub use recording::{Recording, RecordingError};
+pub use table::Table;
 pub use writer::{Film, Pace, Pictures, Plan, Writer, Written, film_pace};
 
 /// A file or folder that could not be made or written.

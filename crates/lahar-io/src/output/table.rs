@@ -1,0 +1,87 @@
+//! A csv file of a run (`diagnostics.csv`, `probes/NAME.csv`), read back.
+
+use std::fs;
+use std::path::Path;
+
+use super::OutputError;
+
+/// Named columns of numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    names: Vec<String>,
+    /// A column a name, all of one length.
+    columns: Vec<Vec<f64>>,
+}
+
+impl Table {
+    /// Reads the file at `path`: a line of names, then lines of as many values. A value that is no
+    /// number (what limited dt) is read as not a number. A last line without its end, which a killed run can
+    /// leave, is left out.
+    ///
+    /// # Errors
+    /// If there is no such file, or a line has another number of values than there are names.
+    pub fn read(path: &Path) -> Result<Self, OutputError> {
+        let text = fs::read_to_string(path)
+            .map_err(|error| OutputError::usage(path, format!("cannot read: {error}")))?;
+        Self::parse(&text).map_err(|what| OutputError::usage(path, what))
+    }
+
+    fn parse(text: &str) -> Result<Self, String> {
+        let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+        let mut lines = whole.lines();
+        let names: Vec<String> = match lines.next() {
+            Some(line) if !line.is_empty() => line.split(',').map(str::to_owned).collect(),
+            _ => return Err("there is no line of names".to_owned()),
+        };
+        let mut columns = vec![Vec::new(); names.len()];
+        for (number, line) in lines.enumerate() {
+            let values: Vec<&str> = line.split(',').collect();
+            if values.len() != names.len() {
+                return Err(format!(
+                    "line {} has {} values for {} names",
+                    number + 2,
+                    values.len(),
+                    names.len()
+                ));
+            }
+            for (column, value) in columns.iter_mut().zip(values) {
+                column.push(value.parse().unwrap_or(f64::NAN));
+            }
+        }
+        Ok(Self { names, columns })
+    }
+
+    /// The column of that name.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        let index = self.names.iter().position(|n| n == name)?;
+        Some(&self.columns[index])
+    }
+
+    /// All names, in the file's order.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_by_name() {
+        let table = Table::parse("time,dt_limit,volume\n0,none,1.5\n0.5,sound,1e-3\n").unwrap();
+        assert_eq!(table.column("time"), Some(&[0.0, 0.5][..]));
+        assert_eq!(table.column("volume"), Some(&[1.5, 1e-3][..]));
+        assert!(table.column("dt_limit").unwrap()[0].is_nan());
+        assert_eq!(table.column("mass"), None);
+    }
+
+    #[test]
+    fn a_cut_line_is_left_out_and_a_wrong_one_is_an_error() {
+        let table = Table::parse("time,volume\n0,1\n0.5,1.2").unwrap();
+        assert_eq!(table.column("time"), Some(&[0.0][..]));
+        let error = Table::parse("time,volume\n0,1\n0.5\n1,1\n").unwrap_err();
+        assert!(error.contains("line 3 has 1 values for 2 names"), "{error}");
+        assert!(Table::parse("").is_err());
+    }
+}

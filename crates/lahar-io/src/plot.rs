@@ -1,0 +1,216 @@
+//! Plots of a run's numbers over time, as SVG.
+
+use std::fmt;
+
+use plotters::prelude::*;
+
+/// Lines over a common axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Plot {
+    /// Above the plot.
+    pub title: String,
+    /// Along the lower side, with its unit.
+    pub x_label: String,
+    /// Along the left side, with its unit.
+    pub y_label: String,
+    /// Drawn in this order, each in a colour of its own.
+    pub lines: Vec<Line>,
+}
+
+/// A line, broken where a number is not finite.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Line {
+    /// In the legend.
+    pub name: String,
+    /// (x, y).
+    pub points: Vec<(f64, f64)>,
+}
+
+/// Why a plot could not be drawn.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlotError(String);
+
+impl fmt::Display for PlotError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "cannot draw the plot: {}", self.0)
+    }
+}
+
+impl std::error::Error for PlotError {}
+
+/// Of a plot \[pixels\].
+const SIZE: (u32, u32) = (760, 420);
+
+/// Told apart with every kind of eye (P. Tol, "Colour schemes", 2021: bright, without yellow).
+const COLOURS: [RGBColor; 6] = [
+    RGBColor(0x44, 0x77, 0xAA),
+    RGBColor(0xEE, 0x66, 0x77),
+    RGBColor(0x22, 0x88, 0x33),
+    RGBColor(0xAA, 0x33, 0x77),
+    RGBColor(0x66, 0xCC, 0xEE),
+    RGBColor(0x55, 0x55, 0x55),
+];
+
+impl Plot {
+    /// The SVG document.
+    ///
+    /// # Errors
+    /// If there is no finite point.
+    pub fn svg(&self) -> Result<String, PlotError> {
+        let mut text = String::new();
+        let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
+        self.draw(&root)?;
+        drop(root);
+        Ok(text)
+    }
+
+    fn draw(
+        &self,
+        area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
+    ) -> Result<(), PlotError> {
+        let wrong = |error: DrawingAreaErrorKind<_>| PlotError(error.to_string());
+        let points = || {
+            self.lines
+                .iter()
+                .flat_map(|line| &line.points)
+                .filter(finite)
+        };
+        let x = range(points().map(|p| p.0), 0.0);
+        let y = range(points().map(|p| p.1), 0.05);
+        let (Some(x), Some(y)) = (x, y) else {
+            return Err(PlotError(format!("\"{}\" has no finite point", self.title)));
+        };
+        area.fill(&WHITE).map_err(wrong)?;
+        let mut chart = ChartBuilder::on(area)
+            .caption(&self.title, ("sans-serif", 20))
+            .margin(12)
+            .x_label_area_size(42)
+            .y_label_area_size(78)
+            .build_cartesian_2d(x, y)
+            .map_err(wrong)?;
+        chart
+            .configure_mesh()
+            .x_desc(&self.x_label)
+            .y_desc(&self.y_label)
+            .axis_desc_style(("sans-serif", 15))
+            .label_style(("sans-serif", 13))
+            .light_line_style(WHITE)
+            .x_label_formatter(&|x| number(*x))
+            .y_label_formatter(&|y| number(*y))
+            .draw()
+            .map_err(wrong)?;
+        for (line, colour) in self.lines.iter().zip(COLOURS.iter().cycle()) {
+            let style = colour.stroke_width(2);
+            for (index, piece) in line.points.split(|p| !finite(&p)).enumerate() {
+                let drawn = chart
+                    .draw_series(LineSeries::new(piece.iter().copied(), style))
+                    .map_err(wrong)?;
+                if index == 0 {
+                    drawn
+                        .label(&line.name)
+                        .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], style));
+                }
+            }
+        }
+        if self.lines.len() > 1 {
+            chart
+                .configure_series_labels()
+                .background_style(WHITE.mix(0.85))
+                .border_style(RGBColor(0xBB, 0xBB, 0xBB))
+                .label_font(("sans-serif", 14))
+                .draw()
+                .map_err(wrong)?;
+        }
+        area.present().map_err(wrong)
+    }
+}
+
+fn finite(point: &&(f64, f64)) -> bool {
+    point.0.is_finite() && point.1.is_finite()
+}
+
+/// From the least to the largest with so much of it as `room` at both ends; never empty.
+fn range(values: impl Iterator<Item = f64>, room: f64) -> Option<core::ops::Range<f64>> {
+    let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+        (low.min(x), high.max(x))
+    });
+    if low > high {
+        return None;
+    }
+    // What differs by rounding only is drawn as constant.
+    let least = 1e-9 * low.abs().max(high.abs()).max(1e-30);
+    let room = (room * (high - low)).max(least);
+    Some(low - room..high + room)
+}
+
+/// As few digits as tell the number: 0.25, 1.2e-5.
+fn number(value: f64) -> String {
+    let size = value.abs();
+    if size < 1e-12 {
+        return "0".to_owned();
+    }
+    if !(1e-3..1e5).contains(&size) {
+        return format!("{value:.2e}");
+    }
+    let digits = (3 - size.log10().floor() as i32).max(0) as usize;
+    let text = format!("{value:.digits$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plot(points: &[(f64, f64)]) -> Plot {
+        Plot {
+            title: "Kinetic energy".into(),
+            x_label: "time [s]".into(),
+            y_label: "[J]".into(),
+            lines: vec![
+                Line {
+                    name: "apic".into(),
+                    points: points.to_vec(),
+                },
+                Line {
+                    name: "pic <&>".into(),
+                    points: vec![(0.0, 1.0), (1.0, 0.5)],
+                },
+            ],
+        }
+    }
+
+    #[test]
+    fn lines_titles_and_names_are_in_the_document() {
+        let svg = plot(&[(0.0, 1.0), (0.5, f64::NAN), (1.0, 2.0)])
+            .svg()
+            .unwrap();
+        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+        for text in ["Kinetic energy", "time [s]", "apic", "pic &lt;&amp;&gt;"] {
+            assert!(svg.contains(text), "{text} is missing");
+        }
+    }
+
+    #[test]
+    fn one_point_and_a_constant_can_be_drawn_but_nothing_cannot() {
+        let mut constant = plot(&[(0.0, 3.0), (1.0, 3.0)]);
+        constant.lines.truncate(1);
+        constant.svg().unwrap();
+        constant.lines[0].points.truncate(1);
+        constant.svg().unwrap();
+        constant.lines[0].points[0].1 = f64::INFINITY;
+        assert!(constant.svg().is_err());
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(number(0.25), "0.25");
+        assert_eq!(number(-1200.0), "-1200");
+        assert_eq!(number(1.23456e-5), "1.23e-5");
+        assert_eq!(number(0.0), "0");
+        assert_eq!(number(0.1 + 0.2), "0.3");
+    }
+}
