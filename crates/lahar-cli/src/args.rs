@@ -42,6 +42,8 @@ pub(crate) enum Command {
     Show(Show),
     /// Write a commented scene to start from
     New(New),
+    /// Plot what runs have measured over time: energies, momenta, volume, speed, time step
+    Plot(Plot),
     /// Print the JSON schema of scene files, for editors
     Schema,
     /// Print completions for a shell
@@ -77,7 +79,7 @@ pub(crate) struct View {
 }
 
 /// The scene and what is laid over it.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub(crate) struct SceneArgs {
     /// A built-in scene's name (see `lahar list`) or a scene file
     pub(crate) scene: String,
@@ -92,7 +94,7 @@ pub(crate) struct SceneArgs {
 }
 
 /// Options of `run`.
-#[derive(Debug, clap::Args)]
+#[derive(Clone, Debug, clap::Args)]
 pub(crate) struct Run {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -129,6 +131,11 @@ pub(crate) struct Run {
     #[arg(long)]
     pub(crate) images: bool,
 
+    /// Run the scene once for each of several values of a key, and put pictures and plots side by side, as in
+    /// `--compare transfer=pic,flip,apic`
+    #[arg(long, value_name = "KEY=A,B", conflicts_with_all = ["dry_run", "json"])]
+    pub(crate) compare: Option<Comparison>,
+
     /// Check everything and say what would be done, without doing it
     #[arg(long)]
     pub(crate) dry_run: bool,
@@ -163,6 +170,18 @@ pub(crate) struct New {
     /// The file to write, like my.toml; one that is there is left alone
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
+}
+
+/// Options of `plot`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Plot {
+    /// Folders that `lahar run` has written; several are drawn into the same plots
+    #[arg(required = true, value_name = "DIR")]
+    pub(crate) runs: Vec<PathBuf>,
+
+    /// The folder to write; plots/ in the run's folder if not given, and there is one run
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
 }
 
 /// Options of `completions`.

@@ -7,12 +7,14 @@
 
 mod args;
 mod clock;
+mod compare;
 mod completions;
 mod error;
 mod interrupt;
 mod list;
 mod new;
 mod plan;
+mod plot;
 mod progress;
 mod run;
 mod schema;
@@ -53,10 +55,14 @@ fn execute(args: Args) -> Result<ExitCode, CliError> {
     match args.command {
         None => window::open_or_run(),
         Some(Command::View(view)) => window::open(view),
-        Some(Command::Run(run)) => run::run(plan::Plan::from_args(&run)?, run.json),
+        Some(Command::Run(run)) => match &run.compare {
+            Some(comparison) => compare::compare(&run, comparison),
+            None => run::run(plan::Plan::from_args(&run)?, run.json),
+        },
         Some(Command::List(list)) => list::list(list.json),
         Some(Command::Show(show)) => show::show(&show),
         Some(Command::New(args)) => new::new(&args.file),
+        Some(Command::Plot(plot)) => plot::plot(&plot),
         Some(Command::Schema) => schema::schema(),
         Some(Command::Completions(completions)) => completions::completions(completions.shell),
     }

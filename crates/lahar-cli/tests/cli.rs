@@ -291,6 +291,73 @@ fn broken_scenes_are_code_2() {
 }
 
 #[test]
+fn values_are_compared_side_by_side_and_plotted() {
+    let here = here();
+    let words = [
+        "run",
+        "spinning-jelly",
+        "--frames=3",
+        "--compare=transfer=pic,apic",
+    ];
+    code(&lahar(here.path(), &words), 0);
+    let whole = here.path().join("out/spinning-jelly-compared");
+    let own = names(&whole);
+    for name in ["apic", "pic", "images", "plots", "video.gif"] {
+        assert!(own.iter().any(|n| n == name), "{name} is not in {own:?}");
+    }
+    let record = |run: &str| {
+        let text = std::fs::read_to_string(whole.join(run).join("run.json")).unwrap();
+        serde_json::from_str::<Value>(&text).unwrap()
+    };
+    assert_eq!(record("pic")["scene"]["transfer"], "pic");
+    assert_eq!(record("apic")["scene"]["transfer"], "apic");
+    let picture = |path: &str| lahar_io::image::Picture::load_png(whole.join(path)).unwrap();
+    let (one, both) = (
+        picture("pic/images/000003.png"),
+        picture("images/000003.png"),
+    );
+    assert!(both.width > 2 * one.width && both.height > one.height);
+    let plot = std::fs::read_to_string(whole.join("plots/angular-momentum.svg")).unwrap();
+    assert!(plot.contains("transfer = pic") && plot.contains("transfer = apic"));
+
+    // Wrong before anything is run.
+    let wrong = ["run", "spinning-jelly", "--compare=transfer=pic,apix"];
+    let output = lahar(here.path(), &wrong);
+    code(&output, 2);
+    assert!(errors(&output).contains("apix"), "{}", errors(&output));
+    assert_eq!(names(&here.path().join("out")).len(), 1);
+}
+
+#[test]
+fn plots_of_one_run_and_of_several() {
+    let here = here();
+    for transfer in ["pic", "apic"] {
+        let set = format!("--set=transfer={transfer}");
+        let words = ["run", "spinning-jelly", "--frames=2", "--format=none", &set];
+        code(
+            &lahar(here.path(), &[&words[..], &["-o", transfer]].concat()),
+            0,
+        );
+    }
+    code(&lahar(here.path(), &["plot", "pic"]), 0);
+    assert!(here.path().join("pic/plots/energy.svg").is_file());
+    code(
+        &lahar(here.path(), &["plot", "pic", "apic", "-o", "both"]),
+        0,
+    );
+    let plot = std::fs::read_to_string(here.path().join("both/energy.svg")).unwrap();
+    assert!(plot.contains(">\npic") || plot.contains("pic\n"), "{plot}");
+    code(&lahar(here.path(), &["plot", "pic", "apic"]), 2);
+    let output = lahar(here.path(), &["plot", "nowhere"]);
+    code(&output, 2);
+    assert!(
+        errors(&output).contains("diagnostics.csv"),
+        "{}",
+        errors(&output)
+    );
+}
+
+#[test]
 fn the_same_run_gives_the_same_files() {
     let here = here();
     for (folder, threads) in [("a", "--threads=1"), ("b", "--threads=3")] {

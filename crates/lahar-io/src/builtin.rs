@@ -37,6 +37,7 @@ const SCENES: &[Builtin] = scenes! {
     "water-jelly-snow" 2 "Water, jelly and snow" "A block of each falls into a pool: water splashes, jelly floats, snow breaks up.";
     "water-jelly-snow-3d" 3 "Water, jelly and snow in 3D" "Cubes of water and jelly and a ball of snow fall into a pool.";
     "jelly-drop" 2 "Jelly drop" "Jellies of three firmnesses fall: the soft one spreads, the firm one jumps.";
+    "spinning-jelly" 2 "Spinning jelly" "A square of jelly turns in free space: what a transfer scheme loses, shows.";
     "snowball" 2 "Snowball" "A thrown snowball bursts on a wall.";
     "obstacle" 2 "Dam break with elastic plates" "A wave bends two elastic plates and shoots over them.";
     "rain" 2 "Rain" "Rows of drops fall into a pool.";

@@ -41,6 +41,8 @@ impl std::error::Error for PlotError {}
 /// Of a plot \[pixels\].
 const SIZE: (u32, u32) = (760, 420);
 
+const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
+
 /// Told apart with every kind of eye (P. Tol, "Colour schemes", 2021: bright, without yellow).
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0x44, 0x77, 0xAA),
@@ -94,6 +96,7 @@ impl Plot {
             .y_desc(&self.y_label)
             .axis_desc_style(("sans-serif", 15))
             .label_style(("sans-serif", 13))
+            .bold_line_style(GRID)
             .light_line_style(WHITE)
             .x_label_formatter(&|x| number(*x))
             .y_label_formatter(&|y| number(*y))

@@ -1,0 +1,169 @@
+//! `lahar plot`: what runs have measured, over time, as SVG.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use lahar_io::output::Table;
+use lahar_io::plot::{Line, Plot};
+
+use crate::error::CliError;
+use crate::{args, terminal};
+
+/// A plot: its file's name, what stands over it, and its columns with what the legend calls them.
+struct Figure {
+    file: &'static str,
+    title: &'static str,
+    unit: &'static str,
+    columns: &'static [(&'static [&'static str], &'static str)],
+}
+
+/// Sums of columns, in joules, metres and so on; in 2D per metre of depth.
+const FIGURES: &[Figure] = &[
+    Figure {
+        file: "energy",
+        title: "Energy",
+        unit: "[J]",
+        columns: &[
+            (&["kinetic_energy"], "kinetic"),
+            (&["elastic_energy"], "elastic"),
+            (&["potential_energy"], "potential"),
+            (&TOTAL, "total"),
+        ],
+    },
+    Figure {
+        file: "angular-momentum",
+        title: "Angular momentum",
+        unit: "[kg m²/s]",
+        columns: &[
+            (&["angular_momentum_x"], "about x"),
+            (&["angular_momentum_y"], "about y"),
+            (&["angular_momentum_z"], "about z"),
+        ],
+    },
+    Figure {
+        file: "momentum",
+        title: "Momentum",
+        unit: "[kg m/s]",
+        columns: &[
+            (&["momentum_x"], "x"),
+            (&["momentum_y"], "y"),
+            (&["momentum_z"], "z"),
+        ],
+    },
+    Figure {
+        file: "volume",
+        title: "Volume",
+        unit: "[m³; m² in 2D]",
+        columns: &[
+            (&["volume"], "that particles fill"),
+            (&["particle_volume"], "that particles say"),
+        ],
+    },
+    Figure {
+        file: "speed",
+        title: "Largest speed",
+        unit: "[m/s]",
+        columns: &[(&["max_speed"], "largest speed")],
+    },
+    Figure {
+        file: "time-step",
+        title: "Shortest substep of a frame",
+        unit: "[s]",
+        columns: &[(&["dt_min"], "shortest substep")],
+    },
+];
+
+const TOTAL: [&str; 3] = ["kinetic_energy", "elastic_energy", "potential_energy"];
+
+/// Plots `args.runs`.
+pub(crate) fn plot(args: &args::Plot) -> Result<ExitCode, CliError> {
+    let folder = match (&args.output, args.runs.as_slice()) {
+        (Some(folder), _) => folder.clone(),
+        (None, [run]) => run.join("plots"),
+        (None, _) => {
+            return Err(CliError::Usage(
+                "several runs are plotted into a folder of their own: name it with -o DIR".into(),
+            ));
+        }
+    };
+    let named = |run: &PathBuf| {
+        let name = run.file_name().unwrap_or(run.as_os_str());
+        (name.to_string_lossy().into_owned(), run.clone())
+    };
+    let runs: Vec<_> = args.runs.iter().map(named).collect();
+    for path in draw(&runs, &folder)? {
+        terminal::print(&format!("  {}\n", path.display()));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Draws all figures of `runs`, each with its name, into `folder`; returns the files.
+pub(crate) fn draw(runs: &[(String, PathBuf)], folder: &Path) -> Result<Vec<PathBuf>, CliError> {
+    let mut tables = Vec::new();
+    for (name, run) in runs {
+        tables.push((name.as_str(), Table::read(&run.join("diagnostics.csv"))?));
+    }
+    let cannot = |what: String| CliError::Machine(format!("{}: {what}", folder.display()));
+    fs::create_dir_all(folder).map_err(|error| cannot(format!("cannot make it: {error}")))?;
+    let mut files = Vec::new();
+    for figure in FIGURES {
+        let lines = figure.lines(&tables);
+        if lines.is_empty() {
+            continue;
+        }
+        let plot = Plot {
+            title: figure.title.to_owned(),
+            x_label: "time [s]".to_owned(),
+            y_label: figure.unit.to_owned(),
+            lines,
+        };
+        // A run that ended before its second frame may have nothing to draw.
+        let Ok(svg) = plot.svg() else { continue };
+        let path = folder.join(figure.file).with_extension("svg");
+        fs::write(&path, svg)
+            .map_err(|error| cannot(format!("cannot write {}: {error}", path.display())))?;
+        files.push(path);
+    }
+    Ok(files)
+}
+
+impl Figure {
+    /// Its columns of one run; or of each of several, and then the energies' sum only.
+    fn lines(&self, tables: &[(&str, Table)]) -> Vec<Line> {
+        let several = tables.len() > 1;
+        let wanted = |name: &str| !several || self.file != "energy" || name == "total";
+        let mut lines = Vec::new();
+        for (run, table) in tables {
+            let Some(time) = table.column("time") else {
+                continue;
+            };
+            // Components that this dimension does not have are left out.
+            let columns: Vec<(&str, Vec<&[f64]>)> = self
+                .columns
+                .iter()
+                .filter(|(_, name)| wanted(name))
+                .filter_map(|(columns, name)| {
+                    let columns = columns.iter().map(|column| table.column(column));
+                    Some((*name, columns.collect::<Option<_>>()?))
+                })
+                .collect();
+            for (name, parts) in &columns {
+                let sum = |row: usize| parts.iter().map(|part| part[row]).sum();
+                lines.push(Line {
+                    name: match (several, columns.len()) {
+                        (false, _) => (*name).to_owned(),
+                        (true, 1) => (*run).to_owned(),
+                        (true, _) => format!("{run}, {name}"),
+                    },
+                    points: time
+                        .iter()
+                        .enumerate()
+                        .map(|(row, t)| (*t, sum(row)))
+                        .collect(),
+                });
+            }
+        }
+        lines
+    }
+}
