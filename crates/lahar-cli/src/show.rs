@@ -82,7 +82,7 @@ pub(crate) fn describe(scene: &Scene, isa: Isa) -> Result<Value, CliError> {
         "duration": scene.duration,
         "frame_rate": scene.frame_rate,
         "frames": scene.frames(),
-        "substeps_estimate": (scene.duration / dt).ceil(),
+        "substeps_estimate": (scene.duration / dt.min(1.0 / scene.frame_rate)).ceil() as u64,
         "warnings": built.warnings,
     }))
 }
