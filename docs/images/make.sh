@@ -31,7 +31,7 @@ picture jelly-letters 34
 picture gears 60
 picture snow-castle 16
 picture snowballs 16
-picture honey 13
+picture honey 20
 picture planet 40
 picture galaxy 140
 picture knot-3d 24

@@ -42,7 +42,7 @@ const SCENES: &[Builtin] = scenes! {
     "obstacle" 2 "Dam break with elastic plates" "A wave bends two elastic plates and shoots over them.";
     "rain" 2 "Rain" "Rows of drops fall into a pool.";
     "jelly-letters" 2 "Letters of jelly" "The word MPM in jelly falls into a pool and floats.";
-    "honey" 2 "Honey" "A thread of honey folds and piles up on a plate.";
+    "honey" 2 "Honey" "A thread of honey tears off, folds and piles up on a plate.";
     "sloshing" 2 "Sloshing tank" "A tank is shaken at the period of its first wave; colours are speeds.";
     "snow-castle" 2 "Snow castle" "A ball of rubber breaks through a castle of snow.";
     "snowballs" 2 "Snowballs" "Two snowballs meet in the air.";
