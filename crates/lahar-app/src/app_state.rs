@@ -13,7 +13,7 @@ use crate::colour::{self, ColourBy, Range};
 use crate::compare::Draft;
 use crate::controls::{Action, Direction};
 use crate::hand::{Grip, Hand};
-use crate::renderer::{Picture, Sprite, View};
+use crate::renderer::{Picture, Sprites, View};
 use crate::scenery::{Scenery, sprites, usual_radius};
 use crate::scenes::{Changes, Facts, SceneCard, Setting};
 use crate::solver::{Condition, Order, Readouts, Shown, Side, Wanted};
@@ -81,7 +81,7 @@ pub struct AppState {
     pub view_is_own: bool,
     pub(crate) scenery: Scenery,
     /// Particles to draw, by side.
-    pub(crate) sprites: Vec<Arc<Vec<Sprite>>>,
+    pub(crate) sprites: Vec<Arc<Sprites>>,
     /// The direction that gravity has while its key is held, in scenes that want it so.
     pub(crate) held_gravity: Option<Direction>,
 

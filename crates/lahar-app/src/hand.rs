@@ -6,7 +6,6 @@ use lahar_io::scene::Controls;
 
 use crate::app_state::AppState;
 use crate::camera::{V3, add, dot, sub};
-use crate::renderer::Sprite;
 use crate::solver::Order;
 
 /// The hand's reach and strength.
@@ -84,13 +83,13 @@ impl AppState {
         const CLOSE: f64 = 0.04;
         let camera = (self.camera.as_ref()).filter(|camera| camera.dimension == 3)?;
         let back = camera.axes()[2];
-        let near = |sprite: &Sprite| {
-            let point = add(sprite.position.map(f64::from), self.scenery.origin);
+        let near = |&[x, y, z, _]: &[f32; 4]| {
+            let point = add([x, y, z].map(f64::from), self.scenery.origin);
             let [x, y] = camera.project(point, self.aspect)?;
             let off = f64::hypot((x - at[0]) * self.aspect, y - at[1]);
             (off < CLOSE).then(|| (dot(back, point), point))
         };
-        let found = self.sprites.get(side)?.iter().filter_map(near);
+        let found = self.sprites.get(side)?.places.iter().filter_map(near);
         found
             .max_by(|a, b| a.0.total_cmp(&b.0))
             .map(|(_, point)| point)

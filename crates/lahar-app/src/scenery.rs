@@ -7,11 +7,11 @@ use lahar::{Field, Snapshot};
 
 use crate::camera::{V3, add, against, corners, scale, sub};
 use crate::colour::{ColourBy, Range, colours};
-use crate::renderer::{Line, Sprite};
+use crate::renderer::{Line, Sprites};
 use crate::scenes::Facts;
 
 /// Radius in parts of the spacing: discs that leave no holes between jittered particles.
-const RADIUS_2D: f32 = 0.95;
+const RADIUS_2D: f32 = 1.05;
 /// Balls need less: those behind fill the gaps.
 const RADIUS_3D: f32 = 0.65;
 
@@ -59,9 +59,9 @@ pub(crate) fn sprites(
     facts: &Facts,
     scenery: &Scenery,
     (by, palette, range): (ColourBy, &[Color32], &Range),
-) -> Vec<Sprite> {
+) -> Sprites {
     let Some(positions) = snapshot.get(Field::Position).map(lahar::Data::to_f64) else {
-        return vec![];
+        return Sprites::default();
     };
     let d = snapshot.dimension;
     let spacings: Vec<f32> = match (facts.angle.particle_radius, snapshot.get(Field::Volume0)) {
@@ -74,19 +74,16 @@ pub(crate) fn sprites(
         (None, None) => vec![0.5 * facts.dx as f32; snapshot.count],
     };
     let colours = colours(by, snapshot, facts, palette, range);
-    (positions.chunks_exact(d).zip(spacings).zip(colours))
-        .map(|((x, spacing), colour)| {
-            let mut position = [0.0; 3];
+    let places = (positions.chunks_exact(d).zip(spacings))
+        .map(|(x, spacing)| {
+            let mut place = [0.0, 0.0, 0.0, spacing];
             for i in 0..d {
-                position[i] = (x[i] - scenery.origin[i]) as f32;
+                place[i] = (x[i] - scenery.origin[i]) as f32;
             }
-            Sprite {
-                position,
-                spacing,
-                colour,
-            }
+            place
         })
-        .collect()
+        .collect();
+    Sprites { places, colours }
 }
 
 /// The domain, or the box of the particles.

@@ -71,7 +71,7 @@ drag() { # X Y BUTTON DX DY
 if [ -n "${MEASURE:-}" ]; then
     export LP_NUM_THREADS=1
     scene=(dam-break --set bodies.0.particles_per_cell=3.334 --threads 1)
-    for round in 1 2 3 4 5; do
+    for round in $(seq ${ROUNDS:-5}); do
         headless=$("$program" run "${scene[@]}" --frames 60 --format none -o "$XDG_RUNTIME_DIR/run-$round" --json 2>/dev/null |
             python3 -c 'import json,sys; print(json.load(sys.stdin)["particle_steps_per_second"] / 1e6)')
         open view "${scene[@]}" --trace

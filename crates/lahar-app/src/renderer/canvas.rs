@@ -6,13 +6,13 @@ use eframe::egui::Color32;
 use eframe::egui_wgpu::wgpu;
 
 use super::pipelines::{COLOUR, DEPTH, Pipelines};
+use super::texels::Texels;
 use super::{Picture, View};
 
 /// What one picture is drawn from, and onto.
 pub(super) struct Canvas {
     view: wgpu::Buffer,
-    view_group: wgpu::BindGroup,
-    sprites: Growing,
+    sprites: Texels,
     lines: Growing,
     target: Option<Target>,
     drawn: Option<Picture>,
@@ -34,18 +34,9 @@ impl Canvas {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        let view_group = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("view"),
-            layout: &pipelines.view_layout,
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: view.as_entire_binding(),
-            }],
-        });
         Self {
+            sprites: Texels::new(device, pipelines, &view, 0),
             view,
-            view_group,
-            sprites: Growing::new("sprites"),
             lines: Growing::new("lines"),
             target: None,
             drawn: None,
@@ -83,8 +74,11 @@ impl Canvas {
             return;
         }
         if !same_sprites {
-            let bytes = bytemuck::cast_slice(&picture.sprites);
-            self.sprites.fill(device, queue, bytes);
+            let count = picture.sprites.places.len();
+            if self.sprites.is_too_small(device, count) {
+                self.sprites = Texels::new(device, pipelines, &self.view, count);
+            }
+            self.sprites.fill(queue, &picture.sprites);
         }
         if !same_lines {
             let bytes = bytemuck::cast_slice(&picture.lines);
@@ -121,16 +115,14 @@ impl Canvas {
             }),
             ..Default::default()
         });
-        pass.set_bind_group(0, &self.view_group, &[]);
-        if let Some(sprites) = &self.sprites.buffer {
-            pass.set_pipeline(if picture.solid {
-                &pipelines.balls
-            } else {
-                &pipelines.discs
-            });
-            pass.set_vertex_buffer(0, sprites.slice(..));
-            pass.draw(0..4, 0..picture.sprites.len() as u32);
-        }
+        pass.set_bind_group(0, &self.sprites.group, &[]);
+        pass.set_pipeline(if picture.solid {
+            &pipelines.balls
+        } else {
+            &pipelines.discs
+        });
+        // Two triangles each.
+        pass.draw(0..6 * self.sprites.count, 0..1);
         if let Some(lines) = &self.lines.buffer {
             pass.set_pipeline(if picture.solid {
                 &pipelines.lines_among_balls

@@ -10,6 +10,7 @@
 
 mod canvas;
 mod pipelines;
+mod texels;
 
 use std::sync::Arc;
 
@@ -23,16 +24,13 @@ use crate::camera::M4;
 use canvas::Canvas;
 use pipelines::Pipelines;
 
-/// A particle as the shader takes it.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub struct Sprite {
-    /// Less the picture's origin \[m\].
-    pub position: [f32; 3],
-    /// Distance to its neighbours at rest \[m\].
-    pub spacing: f32,
-    /// Red, green, blue, 255.
-    pub colour: [u8; 4],
+/// Particles as the shader takes them, one after the other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Sprites {
+    /// Position less the picture's origin, and distance to the neighbours at rest \[m\].
+    pub places: Vec<[f32; 4]>,
+    /// Red, green, blue, 255; as many as places.
+    pub colours: Vec<[u8; 4]>,
 }
 
 /// A straight line as the shader takes it.
@@ -71,7 +69,7 @@ pub struct Picture {
     /// Which of the pictures in the window it is; each keeps its place on the graphics card.
     pub slot: usize,
     /// The particles.
-    pub sprites: Arc<Vec<Sprite>>,
+    pub sprites: Arc<Sprites>,
     /// Lines, such as the domain's edges.
     pub lines: Arc<Vec<Line>>,
     /// The camera.

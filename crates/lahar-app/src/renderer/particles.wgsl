@@ -1,5 +1,5 @@
 // Particles as squares that face the camera: discs with smooth edges in 2D, shaded balls in 3D.
-// Instances come from a vertex buffer: GL and WebGL2 have no storage buffers in this stage.
+// Six corners of two triangles each; the particles themselves are in textures, see texels.rs.
 
 struct View {
     view: mat4x4<f32>,        // world, less the origin, to the camera's axes
@@ -9,6 +9,10 @@ struct View {
     unused: f32,
 };
 @group(0) @binding(0) var<uniform> scene: View;
+@group(0) @binding(1) var places: texture_2d<f32>;      // position, spacing
+@group(0) @binding(2) var colours: texture_2d<f32>;
+
+const WIDTH: u32 = 2048u;                               // particles in a row
 
 struct Corner {
     @builtin(position) position: vec4<f32>,
@@ -19,24 +23,29 @@ struct Corner {
 };
 
 @vertex
-fn corner(
-    @builtin(vertex_index) index: u32,
-    @location(0) position: vec3<f32>,
-    @location(1) spacing: f32,
-    @location(2) colour: vec4<f32>,
-) -> Corner {
+fn corner(@builtin(vertex_index) index: u32) -> Corner {
+    let particle = index / 6u;
+    let texel = vec2<u32>(particle % WIDTH, particle / WIDTH);
+    let place = textureLoad(places, texel, 0);
+    let position = place.xyz;
+    let spacing = place.w;
+    // Corners 0 1 2, 2 1 3 of
+    //     2 3
+    //     0 1
+    let k = index % 6u;
+    let which = select(k, select(5u - k, 3u, k == 5u), k > 2u);
     var out: Corner;
     let centre = (scene.view * vec4<f32>(position, 1.0)).xyz;
     // Never smaller than a pixel or so: a far particle should fade, not flicker.
     let w = scene.projection[2][3] * centre.z + scene.projection[3][3];
     let pixel = 2.0 * w / (scene.projection[1][1] * scene.pixels.y);
     let radius = max(scene.radius * spacing, 0.7 * pixel);
-    let at = vec2<f32>(f32(index & 1u), f32(index >> 1u)) * 2.0 - 1.0;
+    let at = vec2<f32>(f32(which & 1u), f32(which >> 1u)) * 2.0 - 1.0;
     // Room for half a pixel of soft edge.
     let reach = 1.0 + 0.5 * pixel / radius;
     out.at = at * reach;
     out.position = scene.projection * vec4<f32>(centre + vec3<f32>(out.at * radius, 0.0), 1.0);
-    out.colour = colour;
+    out.colour = textureLoad(colours, texel, 0);
     out.centre = centre;
     out.radius = radius;
     return out;

@@ -2,7 +2,7 @@
 
 use eframe::egui_wgpu::wgpu;
 
-use super::{Line, Sprite};
+use super::Line;
 
 pub(super) const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -22,17 +22,21 @@ pub(super) struct Pipelines {
 impl Pipelines {
     pub(super) fn new(device: &wgpu::Device, window: wgpu::TextureFormat) -> Self {
         let view_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("view"),
-            entries: &[wgpu::BindGroupLayoutEntry {
-                binding: 0,
-                visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
-                ty: wgpu::BindingType::Buffer {
-                    ty: wgpu::BufferBindingType::Uniform,
-                    has_dynamic_offset: false,
-                    min_binding_size: None,
+            label: Some("view and particles"),
+            entries: &[
+                wgpu::BindGroupLayoutEntry {
+                    binding: 0,
+                    visibility: wgpu::ShaderStages::VERTEX_FRAGMENT,
+                    ty: wgpu::BindingType::Buffer {
+                        ty: wgpu::BufferBindingType::Uniform,
+                        has_dynamic_offset: false,
+                        min_binding_size: None,
+                    },
+                    count: None,
                 },
-                count: None,
-            }],
+                texels(1),
+                texels(2),
+            ],
         });
         let show_layout = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
             label: Some("show"),
@@ -65,11 +69,6 @@ impl Pipelines {
                 order,
             )
         };
-        let sprites = wgpu::VertexBufferLayout {
-            array_stride: size_of::<Sprite>() as u64,
-            step_mode: wgpu::VertexStepMode::Instance,
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32, 2 => Unorm8x4],
-        };
         let lines = wgpu::VertexBufferLayout {
             array_stride: size_of::<Line>() as u64,
             step_mode: wgpu::VertexStepMode::Instance,
@@ -78,21 +77,35 @@ impl Pipelines {
         let particle_shader = include_str!("particles.wgsl");
         let line_shader = include_str!("lines.wgsl");
         Self {
-            discs: make(
-                "discs",
-                particle_shader,
-                "disc",
-                sprites.clone(),
+            discs: make("discs", particle_shader, "disc", None, Order::Over),
+            balls: make("balls", particle_shader, "ball", None, Order::Nearest),
+            lines_over_discs: make(
+                "lines",
+                line_shader,
+                "line",
+                Some(lines.clone()),
                 Order::Over,
             ),
-            balls: make("balls", particle_shader, "ball", sprites, Order::Nearest),
-            lines_over_discs: make("lines", line_shader, "line", lines.clone(), Order::Over),
-            lines_among_balls: make("lines", line_shader, "line", lines, Order::Behind),
+            lines_among_balls: make("lines", line_shader, "line", Some(lines), Order::Behind),
             show: show_pipeline(device, &show_layout, window),
             view_layout,
             show_layout,
             sampler: device.create_sampler(&wgpu::SamplerDescriptor::default()),
         }
+    }
+}
+
+/// A texture that the vertex shader reads, texel by texel.
+fn texels(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::VERTEX,
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        count: None,
     }
 }
 
@@ -112,10 +125,15 @@ fn make(
     label: &str,
     source: &str,
     fragment: &str,
-    instances: wgpu::VertexBufferLayout<'_>,
+    instances: Option<wgpu::VertexBufferLayout<'_>>,
     order: Order,
 ) -> wgpu::RenderPipeline {
     let module = shader(device, label, source);
+    // Particles make their own triangles.
+    let primitive = instances
+        .as_ref()
+        .map_or_else(Default::default, |_| strip());
+    let buffers: Vec<_> = instances.into_iter().map(Some).collect();
     let (blend, depth_write, compare) = match order {
         Order::Over => (true, false, wgpu::CompareFunction::Always),
         Order::Nearest => (false, true, wgpu::CompareFunction::Less),
@@ -133,9 +151,9 @@ fn make(
             module: &module,
             entry_point: Some("corner"),
             compilation_options: wgpu::PipelineCompilationOptions::default(),
-            buffers: &[Some(instances)],
+            buffers: &buffers,
         },
-        primitive: strip(),
+        primitive,
         depth_stencil: Some(wgpu::DepthStencilState {
             format: DEPTH,
             depth_write_enabled: Some(depth_write),
