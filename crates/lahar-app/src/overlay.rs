@@ -187,8 +187,16 @@ pub(crate) fn status(state: &AppState, ui: &Ui, rect: Rect, side: usize) {
         parts.push(format!("{rate} particle-steps/s"));
     }
     let at = title.left_bottom() + vec2(0.0, 4.0);
-    let text = parts.join("  ·  ");
-    painter.text(at, Align2::LEFT_TOP, text, FontId::proportional(12.0), INK);
+    let font = FontId::proportional(12.0);
+    // What does not fit is left out, the last first.
+    loop {
+        let text = painter.layout_no_wrap(parts.join("  ·  "), font.clone(), INK);
+        if at.x + text.size().x <= rect.right() - 8.0 || parts.len() == 1 {
+            painter.galley(at, text, INK);
+            return;
+        }
+        parts.pop();
+    }
 }
 
 /// The keys at the upper right, where scenes have their air; the scenes along the bottom.

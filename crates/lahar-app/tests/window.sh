@@ -109,7 +109,7 @@ press a
 rest 1.5
 picture 05-gravity-left
 press Down
-at 850 420
+at 480 560
 xdotool mousedown 1
 rest 1.2
 picture 06-attract
@@ -133,9 +133,9 @@ drag 700 350 1 25 -8
 xdotool click 4 click 4
 press shift+Left shift+Left ctrl+Up Next
 xdotool keydown shift
-at 650 450
+at 560 420
 xdotool mousedown 1
-rest 1
+rest 1.5
 picture 11-orbit-and-push
 xdotool mouseup 1 keyup shift
 press f
