@@ -154,6 +154,8 @@ pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), Ap
             .with_inner_size(options.size)
             .with_min_inner_size([360.0, 240.0]),
         renderer: eframe::Renderer::Wgpu,
+        // Of use for wide gradients, of which there are none; it costs software drivers dearly.
+        dithering: false,
         ..eframe::NativeOptions::default()
     };
     native.wgpu_options.wgpu_setup = WgpuSetup::CreateNew(adapter_setup);

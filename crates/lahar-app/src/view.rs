@@ -22,8 +22,9 @@ pub fn window(state: &mut AppState, ui: &mut Ui) {
     if let Some(frames) = state.recorded_frames() {
         egui::Panel::bottom("player").show(ui, |ui| player(state, ui, frames));
     }
+    // Without a fill: the picture covers it, or the window's own colour shows.
     egui::CentralPanel::default()
-        .frame(egui::Frame::NONE.fill(state.background))
+        .frame(egui::Frame::NONE)
         .show(ui, |ui| {
             let size = ui.available_size();
             let (rect, response) = ui.allocate_exact_size(size, Sense::drag());

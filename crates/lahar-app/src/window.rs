@@ -6,6 +6,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::Duration;
 
 use eframe::egui::{self, ColorImage};
+use eframe::egui_wgpu::wgpu;
 use lahar_io::image::Picture;
 
 use crate::app_state::{AppState, Effect};
@@ -34,11 +35,15 @@ impl Window {
         screenshots: PathBuf,
         meter: Option<Meter>,
     ) -> Self {
-        let repaint = context.egui_ctx.clone();
-        solver.on_news(move || repaint.request_repaint());
+        let mut pause = Duration::ZERO;
         if let Some(render_state) = &context.wgpu_render_state {
             renderer::install(render_state);
+            if render_state.adapter.get_info().device_type == wgpu::DeviceType::Cpu {
+                pause = SOFTWARE_PAUSE;
+            }
         }
+        let repaint = context.egui_ctx.clone();
+        solver.on_news(move || repaint.request_repaint_after(pause));
         style(&context.egui_ctx);
         Self {
             state,
@@ -99,6 +104,9 @@ impl Window {
         }
     }
 }
+
+/// From news to its picture where the processor draws: what a picture takes, the solver lacks.
+const SOFTWARE_PAUSE: Duration = Duration::from_millis(50);
 
 /// Drawn at least this often.
 const IDLE: Duration = Duration::from_millis(100);
