@@ -379,6 +379,11 @@ const BROKEN: &[(&str, &str, &str)] = &[
         "material = \"water\"\nparticles_per_cell = 1.0e10",
     ),
     (
+        "a thread across an empty domain",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "spacing = 3.0e-5\nshape = { capsule = { from = [0.0, 0.0], to = [2.0, 1.0], radius = 1.0e-4 } }",
+    ),
+    (
         "no particle at all",
         "material = \"water\"",
         "material = \"water\"\nspacing = 10.0",

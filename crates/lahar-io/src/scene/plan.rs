@@ -369,6 +369,9 @@ impl<const D: usize> Plan<D> {
     }
 }
 
+/// Places that sampling may try for each particle that there is memory for.
+const PLACES_A_PARTICLE: f64 = 8.0;
+
 /// The bodies so far against the memory that may be used.
 fn check_count<const D: usize>(
     bodies: &[Body<D>],
@@ -388,15 +391,22 @@ fn check_count<const D: usize>(
         })
         .sum();
     let most = (limits.memory as f64 / Limits::BYTES_PER_PARTICLE).min(f64::from(u32::MAX));
-    if total <= most && candidates <= 64.0 * most {
+    if total <= most && candidates <= PLACES_A_PARTICLE * most {
         return Ok(());
     }
-    let message = format!(
-        "this scene comes to {} particles, about {} GB; the limit is {} GB",
-        count_words(total),
-        count_words((total * Limits::BYTES_PER_PARTICLE / 1e9).ceil()),
-        limits.memory as f64 / 1e9
-    );
+    let message = if total > most {
+        format!(
+            "this scene comes to {} particles, about {} GB; the limit is {} GB",
+            count_words(total),
+            count_words((total * Limits::BYTES_PER_PARTICLE / 1e9).ceil()),
+            limits.memory as f64 / 1e9
+        )
+    } else {
+        format!(
+            "the bodies fill so little of the boxes around them that {} places would have to be tried for particles",
+            count_words(candidates)
+        )
+    };
     // Whatever made them so many: the body's own word, or dx.
     let error = match ["count", "spacing", "particles_per_cell", "particles"]
         .into_iter()
