@@ -5,7 +5,7 @@ import argparse
 import numpy as np
 
 import lahar
-from taichi_programs import PROGRAMS, Program
+from taichi_programs import PROGRAMS, Program, exact_svd
 
 # Bodies of our scenes in the program's order: name, particles, lower corner, upper corner, velocity.
 BODIES = {
@@ -92,7 +92,10 @@ def main():
     words.add_argument("--steps", nargs="+", type=int, default=[25, 50, 100, 200, 350, 500], help="substeps to compare at; multiples of the first")
     words.add_argument("--itself", action="store_true", help="also Taichi's program against itself, particles in another order")
     words.add_argument("--seed", type=int, default=1)
+    words.add_argument("--exact-svd", action="store_true", help="without the threshold of 1e-5 in Taichi's 2D decomposition")
     given = words.parse_args()
+    if given.exact_svd:
+        exact_svd()
     for scene in given.scenes:
         for precision in given.precision:
             compare(given.lahar, scene, precision, given.starts, given.steps, given.itself, given.seed)

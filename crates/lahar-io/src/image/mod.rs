@@ -293,12 +293,14 @@ impl Drawn {
             .chunks_exact(d)
             .map(|x| core::array::from_fn(|axis| if axis < d { x[axis] as f32 } else { 0.0 }))
             .collect();
+        // No larger than a cell: volumes that only have a part in a mass can be anything.
         let size = numbers(Field::Volume0).map_or_else(
             || vec![0.5 * scenery.dx as f32; n],
             |volumes| {
                 volumes
                     .iter()
                     .map(|v| if d == 2 { v.sqrt() } else { v.cbrt() })
+                    .map(|edge| edge.min(scenery.dx as f32))
                     .collect()
             },
         );
