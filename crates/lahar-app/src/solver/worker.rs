@@ -93,16 +93,16 @@ impl Worker {
                 if let Some(frame) = self.seek.take() {
                     self.go_to(frame);
                 }
+                let wait = self.wait().filter(|_| self.is_running());
+                if self.is_running() && wait.is_none() {
+                    return Ok(None); // `work` says when there is something to show
+                }
                 if self.changed {
                     self.publish(); // nothing is newer: what waits to be seen is shown
                 }
-                if !self.is_running() {
-                    inbox.recv().map_err(|_| RecvTimeoutError::Disconnected)
-                } else {
-                    match self.wait() {
-                        None => return Ok(None),
-                        Some(wait) => inbox.recv_timeout(wait),
-                    }
+                match wait {
+                    None => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
+                    Some(wait) => inbox.recv_timeout(wait),
                 }
             }
         };
