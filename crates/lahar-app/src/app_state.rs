@@ -127,7 +127,7 @@ impl AppState {
             background: colour::BACKGROUND,
             range: Range::default(),
             radius: 1.0,
-            hand: Hand::of(Controls::default(), EARTH, 1.0),
+            hand: Hand::of(Controls::default(), EARTH, 1.0, 0.01),
             held: None,
             show_scenes: false,
             thumbnails: HashMap::new(),
@@ -456,6 +456,7 @@ impl AppState {
             facts.controls,
             self.scene_gravity(),
             self.scenery.smallest(facts.dimension),
+            facts.dx,
         );
         if self.speed != facts.controls.speed {
             self.set_speed(facts.controls.speed);

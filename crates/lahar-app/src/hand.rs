@@ -15,6 +15,8 @@ pub struct Hand {
     pub reach: f64,
     /// Acceleration towards it or away from it \[m/s²\].
     pub pull: f64,
+    /// Within which that goes to zero \[m\].
+    pub softening: f64,
 }
 
 /// Reach, in parts of the scene's smallest extent, where the scene does not say.
@@ -23,11 +25,13 @@ const REACH: f64 = 0.25;
 const PULL: f64 = 100.0 / 30.0;
 
 impl Hand {
-    /// As the scene wants it, where `gravity` \[m/s²\] is usual and the smallest extent is `smallest` \[m\].
-    pub(crate) fn of(controls: Controls, gravity: f64, smallest: f64) -> Self {
+    /// As the scene wants it, where `gravity` \[m/s²\] is usual, the smallest extent is `smallest` \[m\] and
+    /// nodes are `dx` \[m\] apart.
+    pub(crate) fn of(controls: Controls, gravity: f64, smallest: f64, dx: f64) -> Self {
         Self {
             reach: controls.reach.unwrap_or(REACH * smallest),
             pull: controls.pull.unwrap_or(PULL * gravity),
+            softening: controls.softening.unwrap_or(dx),
         }
     }
 }
@@ -66,6 +70,7 @@ impl AppState {
         let pointer = Pointer {
             position,
             radius: self.hand.reach,
+            softening: self.hand.softening,
             action,
         };
         self.order(Order::Tell(Command::Pointer(Some(pointer))));

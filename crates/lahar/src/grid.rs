@@ -65,6 +65,7 @@ pub(crate) struct NodeForces<T, const D: usize> {
 pub(crate) struct NodePointer<const D: usize> {
     pub(crate) centre: [f64; D],
     pub(crate) radius: f64,
+    pub(crate) softening: f64,
     pub(crate) action: crate::simulation::PointerAction,
 }
 

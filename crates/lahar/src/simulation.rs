@@ -36,6 +36,8 @@ pub struct Pointer {
     pub position: [f64; 3],
     /// How far it reaches \[m\].
     pub radius: f64,
+    /// Attraction goes to zero within this length \[m\], where its direction means nothing.
+    pub softening: f64,
     /// What it does.
     pub action: PointerAction,
 }
@@ -43,7 +45,8 @@ pub struct Pointer {
 /// What a hand does to a node at the offset d from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PointerAction {
-    /// Accelerates towards the hand by this much \[m/s²\]; negative: away from it.
+    /// Accelerates towards the hand by this much times d/(|d| + softening) \[m/s²\]; negative: away
+    /// from it.
     Attract(f64),
     /// Drags along: node velocities near the hand are drawn to this velocity \[m/s\].
     Drag([f64; 3]),
@@ -585,6 +588,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                     (pointer.position[axis] - self.origin[axis]) / self.setup.dx
                 }),
                 radius: pointer.radius / self.setup.dx,
+                softening: pointer.softening / self.setup.dx,
                 action: pointer.action,
             }),
         };

@@ -72,6 +72,7 @@ impl SceneSource for Blocks {
                     hold: true,
                     pull: Some(100.0),
                     reach: Some(f64::INFINITY),
+                    softening: Some(0.01),
                 }
             } else {
                 Controls::default()

@@ -16,6 +16,8 @@ pub struct Controls {
     pub pull: Option<f64>,
     /// How far the pointer reaches \[m\], infinite for everywhere; `None`: from the scene's size.
     pub reach: Option<f64>,
+    /// The length within which its acceleration goes to zero \[m\]; `None`: a cell.
+    pub softening: Option<f64>,
 }
 
 impl Default for Controls {
@@ -27,6 +29,7 @@ impl Default for Controls {
             hold: false,
             pull: None,
             reach: None,
+            softening: None,
         }
     }
 }
@@ -45,6 +48,7 @@ pub(super) fn read_controls(scene: &Reader<'_>) -> Result<Controls, SceneError> 
             Some(_) => Some(f64::INFINITY),
             None => pointer.opt_number("radius"),
         },
+        softening: pointer.opt_number("softening"),
     })
 }
 

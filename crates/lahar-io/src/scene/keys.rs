@@ -1472,6 +1472,13 @@ pub(crate) static HAND: Section = Section {
             Words("a quarter of the scene's smallest extent"),
             "How far it reaches; `\"everywhere\"`: as hard at any distance.",
         ),
+        key(
+            "softening",
+            Kind::Number(Bound::Positive),
+            "m",
+            Words("`dx`"),
+            "The acceleration is `strength` d/(d + `softening`) at the distance d.",
+        ),
     ]],
 };
 

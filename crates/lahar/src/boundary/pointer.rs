@@ -23,8 +23,11 @@ impl<const D: usize> NodePointer<D> {
         let grip = near * near;
         match self.action {
             PointerAction::Attract(acceleration) => {
-                // Soft within a cell, where the direction means nothing.
-                let per_length = acceleration * grip * dt.to_f64() / (distance + 1.0);
+                let softened = distance + self.softening;
+                if softened == 0.0 {
+                    return velocity;
+                }
+                let per_length = acceleration * grip * dt.to_f64() / softened;
                 velocity + Vector::from_fn(|axis| T::from_f64(offset[axis] * per_length))
             }
             PointerAction::Drag(target) => {
