@@ -288,7 +288,7 @@ fn a_strong_force_shortens_the_first_substep() {
         [0.0; 2],
     );
     setup.time_step = TimeStep::default();
-    let simulation = lahar::Simulation::<f64, 2>::new(setup, &[batch]).expect("a good setup");
+    let simulation = Simulation::<f64, 2>::new(setup, &[batch]).expect("a good setup");
     // It crosses 0.4 of a cell of 0.1 m at √(0.4 × 0.1 × 1e4) = 20 m/s.
     let (dt, _) = simulation.next_dt();
     assert!((dt / (0.04 / 20.0) - 1.0).abs() < 1e-3, "{dt}");
