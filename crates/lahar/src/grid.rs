@@ -293,25 +293,20 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
 
     /// Sums the tiles' contributions and makes velocity of momentum: v = p/m + Δt g, then the walls.
     pub(crate) fn update(&mut self, isa: IsaToken, forces: &NodeForces<T, D>, walls: &Walls<D>) {
-        let mut nodes = core::mem::take(&mut self.nodes);
-        let block_len = self.block_len();
-        let grain = parallel::grain(self.blocks.len(), 16);
-        let this = &*self;
-        parallel::for_chunks(&mut nodes, block_len, 0, grain, &|first, piece| {
-            let _flush = crate::float_mode::FlushToZero::enter();
-            on_level!(isa.0, _simd => {
-                for (index, block) in piece.chunks_exact_mut(block_len).enumerate() {
-                    this.gather_tiles(first + index, block);
-                    this.update_block(first + index, block, forces, walls);
-                }
-            });
+        self.sum(isa, |this, block, nodes| {
+            this.update_block(block, nodes, forces, walls);
         });
-        self.columns.fold(&mut nodes, self.planes, walls);
-        self.nodes = nodes;
+        self.columns.fold(&mut self.nodes, self.planes, walls);
     }
 
     /// Sums the tiles' contributions and leaves them as they are.
     pub(crate) fn sum_tiles(&mut self, isa: IsaToken) {
+        self.sum(isa, |_, _, _| {});
+    }
+
+    /// Sums the tiles' contributions, and calls `then(self, block, its nodes)` on each block.
+    #[inline(always)]
+    fn sum(&mut self, isa: IsaToken, then: impl Fn(&Self, usize, &mut [T]) + Sync) {
         let mut nodes = core::mem::take(&mut self.nodes);
         let block_len = self.block_len();
         let grain = parallel::grain(self.blocks.len(), 16);
@@ -321,6 +316,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             on_level!(isa.0, _simd => {
                 for (index, block) in piece.chunks_exact_mut(block_len).enumerate() {
                     this.gather_tiles(first + index, block);
+                    then(this, first + index, block);
                 }
             });
         });

@@ -484,12 +484,8 @@ struct Energies {
     of_particles: Vec<f64>,
 }
 
-/// `cfl` = c dt/dx, c the speed of pressure waves.
-fn energies<E: Engine<2>>(start: Start, scheme: Setup<2>, cfl: f64) -> Energies {
-    const TIME: f64 = 0.12; // s; nine oscillations of the fastest
-    let (lambda, mu) = lame(YOUNGS_MODULUS, POISSON_RATIO);
-    let sound_speed = (lambda + 2.0 * mu).sqrt(); // at a density of 1
-    let dt = cfl * scheme.dx / sound_speed;
+/// A disc of four cells' radius that starts to move, in substeps of `dt` \[s\].
+fn moving_disc<E: Engine<2>>(start: Start, scheme: Setup<2>, dt: f64) -> (Setup<2>, E) {
     let setup = Setup {
         time_step: TimeStep::Fixed(dt),
         ..scheme
@@ -498,7 +494,17 @@ fn energies<E: Engine<2>>(start: Start, scheme: Setup<2>, cfl: f64) -> Energies 
     let a = start.velocity_gradient();
     batch.velocity = batch.position.iter().map(|&x| times(a, x)).collect();
     batch.affine = vec![a; batch.position.len()];
-    let mut engine = E::new(&setup, &[batch]);
+    let engine = E::new(&setup, &[batch]);
+    (setup, engine)
+}
+
+/// `cfl` = c dt/dx, c the speed of pressure waves.
+fn energies<E: Engine<2>>(start: Start, scheme: Setup<2>, cfl: f64) -> Energies {
+    const TIME: f64 = 0.12; // s; nine oscillations of the fastest
+    let (lambda, mu) = lame(YOUNGS_MODULUS, POISSON_RATIO);
+    let sound_speed = (lambda + 2.0 * mu).sqrt(); // at a density of 1
+    let dt = cfl * scheme.dx / sound_speed;
+    let (setup, mut engine) = moving_disc::<E>(start, scheme, dt);
     let mut energies = Energies {
         staggered: vec![],
         staggered_by_particles: vec![],
@@ -625,15 +631,7 @@ fn k4_energy_plastic<E: Engine<2>>(start: Start) {
             // The hardest snow carries sound fastest: h up to the top of its range.
             let sound_speed = (law.hardening_range[1] * (law.lambda + 2.0 * law.mu)).sqrt();
             let dt = cfl * scheme.dx / sound_speed;
-            let setup = Setup {
-                time_step: TimeStep::Fixed(dt),
-                ..scheme
-            };
-            let mut batch = ball([0.0; 2], 4.0, setup.dx, 0.0, &mut Numbers(1));
-            let a = start.velocity_gradient();
-            batch.velocity = batch.position.iter().map(|&x| times(a, x)).collect();
-            batch.affine = vec![a; batch.position.len()];
-            let mut engine = E::new(&setup, &[batch]);
+            let (setup, mut engine) = moving_disc::<E>(start, scheme, dt);
             let mut before = engine.particles();
             let (mut energy, mut dissipated, mut given_back) = (vec![], 0.0, 0.0_f64);
             for _ in 0..(TIME / dt) as usize {
