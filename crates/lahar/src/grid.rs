@@ -19,13 +19,16 @@
 
 mod columns;
 
+use crate::boundary::impulse::Taken;
 use crate::boundary::walls::Walls;
 use crate::dispatch::on_level;
 use crate::forces::{self, Force};
 use crate::material::IsaToken;
 use crate::math::{Lanes, Vector};
 use crate::parallel;
+use crate::setup::Transfer;
 use crate::store::{Group, block_edge};
+use crate::transfer::Scheme;
 use columns::Columns;
 
 /// Numbers a node and plane.
@@ -90,14 +93,19 @@ pub(crate) struct Grid<T, const D: usize> {
     nodes: Vec<T>,
     /// Δt a of forces that differ from node to node, D numbers a node; empty if there are none.
     impulses: Vec<T>,
+    /// How much of its own velocity a particle keeps: FLIP's blend.
+    blend: f64,
+    /// By the number of the domain's side, what it took in the last update; lengths in cells from
+    /// node 0.
+    pub(crate) taken: Vec<Taken<D>>,
 }
 
 impl<T: Lanes, const D: usize> Grid<T, D> {
-    /// An empty grid for a kernel of `kernel_nodes` nodes an axis.
-    pub(crate) fn new(kernel_nodes: usize, planes: usize) -> Self {
+    /// An empty grid for the kernel and transfer of `scheme`.
+    pub(crate) fn new(scheme: Scheme) -> Self {
         Self {
-            planes,
-            tile_edge: tile_edge::<D>(kernel_nodes),
+            planes: scheme.planes(),
+            tile_edge: tile_edge::<D>(scheme.kernel_nodes()),
             tile_blocks: Vec::new(),
             blocks: Vec::new(),
             links: Vec::new(),
@@ -108,6 +116,11 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             tiles: Vec::new(),
             nodes: Vec::new(),
             impulses: Vec::new(),
+            blend: match scheme.transfer {
+                Transfer::Flip { blend } => blend,
+                Transfer::Pic | Transfer::Apic => 0.0,
+            },
+            taken: vec![Taken::NOTHING; 2 * D],
         }
     }
 
@@ -294,9 +307,52 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
     /// Sums the tiles' contributions and makes velocity of momentum: v = p/m + Δt g, then the walls.
     pub(crate) fn update(&mut self, isa: IsaToken, forces: &NodeForces<T, D>, walls: &Walls<D>) {
         self.sum(isa, |this, block, nodes| {
-            this.update_block(block, nodes, forces, walls);
+            this.update_block(block, nodes, forces);
         });
-        self.columns.fold(&mut self.nodes, self.planes, walls);
+        self.taken.fill(Taken::NOTHING);
+        self.constrain(walls);
+        self.columns.fold(
+            &mut self.nodes,
+            self.planes,
+            walls,
+            self.blend,
+            &mut self.taken,
+        );
+    }
+
+    /// Lets the walls of [`crate::WallStyle::Nodes`] act.
+    fn constrain(&mut self, walls: &Walls<D>) {
+        let _flush = crate::float_mode::FlushToZero::enter();
+        let edge = block_edge(D);
+        let block_len = self.block_len();
+        let blocks = self
+            .blocks
+            .iter()
+            .zip(self.nodes.chunks_exact_mut(block_len));
+        for (block, nodes) in blocks {
+            let first: [i64; D] = block.map(|b| i64::from(b) * edge as i64);
+            if !walls.touch(first, edge) {
+                continue;
+            }
+            let (quads, changes) = nodes.split_at_mut(BLOCK_NODES * QUAD);
+            for index in 0..BLOCK_NODES {
+                let at = index * QUAD;
+                let mass = quads[at + 3];
+                if mass <= T::default() {
+                    continue;
+                }
+                let node =
+                    core::array::from_fn(|axis| first[axis] + axis_index::<D>(index, axis) as i64);
+                let free = Vector::<T, D>::from_fn(|axis| quads[at + axis]);
+                let velocity = walls.constrain(free, node, mass, &mut self.taken);
+                for axis in 0..D {
+                    quads[at + axis] = velocity[axis];
+                    if self.planes == 2 {
+                        changes[at + axis] += velocity[axis] - free[axis];
+                    }
+                }
+            }
+        }
     }
 
     /// Sums the tiles' contributions and leaves them as they are.
@@ -371,16 +427,9 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
     }
 
     #[inline(always)]
-    fn update_block(
-        &self,
-        block: usize,
-        nodes: &mut [T],
-        forces: &NodeForces<T, D>,
-        walls: &Walls<D>,
-    ) {
+    fn update_block(&self, block: usize, nodes: &mut [T], forces: &NodeForces<T, D>) {
         let edge = block_edge(D);
         let first: [i64; D] = self.blocks[block].map(|b| i64::from(b) * edge as i64);
-        let walled = walls.touch(first, edge);
         let (momentum, impulse) = nodes.split_at_mut(BLOCK_NODES * QUAD);
         for index in 0..BLOCK_NODES {
             let quad = &mut momentum[index * QUAD..(index + 1) * QUAD];
@@ -405,15 +454,10 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             if let Some((kept, medium)) = forces.drag {
                 velocity = medium + (velocity - medium) * kept; // (10)
             }
-            if walled || forces.pointer.is_some() {
+            if let Some(pointer) = &forces.pointer {
                 let node =
                     core::array::from_fn(|axis| first[axis] + axis_index::<D>(index, axis) as i64);
-                if let Some(pointer) = &forces.pointer {
-                    velocity = pointer.act(velocity, node, forces.dt);
-                }
-                if walled {
-                    velocity = walls.constrain(velocity, node);
-                }
+                velocity = pointer.act(velocity, node, forces.dt);
             }
             for axis in 0..D {
                 quad[axis] = velocity[axis];

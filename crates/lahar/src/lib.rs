@@ -22,7 +22,7 @@ mod step;
 mod store;
 mod transfer;
 
-pub use boundary::{Contact, Corners, Cushion, Domain, Sides, WallStyle};
+pub use boundary::{BoundaryImpulse, Contact, Corners, Cushion, Domain, Sides, WallStyle};
 pub use diagnostics::Diagnostics;
 pub use error::{DtLimit, Failure, SetupError};
 pub use forces::{AccelerationField, Force, Pull};

@@ -15,6 +15,7 @@
 //! Lever arms are r = x_i − x_p.
 
 use crate::boundary::contact::{Column, ColumnNode};
+use crate::boundary::impulse::Taken;
 use crate::boundary::walls::Walls;
 use crate::error::SetupError;
 use crate::forces;
@@ -268,6 +269,7 @@ impl<const D: usize> Reference<D> {
 
     /// Forces and walls, for a substep of `dt` \[s\]. Nodes without mass are skipped.
     pub fn update_grid(&self, grid: &Grid<Momentum<D>, D>, dt: f64) -> Grid<Velocity<D>, D> {
+        let mut taken = vec![Taken::NOTHING; 2 * D];
         let gravity = Vector(self.setup.gravity);
         let with_mass = grid.iter().filter(|(_, n)| n.mass > 0.0);
         let mut grid = with_mass
@@ -287,7 +289,7 @@ impl<const D: usize> Reference<D> {
                 let velocity = Velocity {
                     mass: n.mass,
                     before,
-                    after: self.walls.constrain(free, node),
+                    after: self.walls.constrain(free, node, n.mass, &mut taken),
                 };
                 (node, velocity)
             })

@@ -3,6 +3,8 @@
 //! [`Simulation`] is the typed one; [`Simulate`] is the same without the types of numbers and
 //! dimension, for outlets that open whatever scene they are given.
 
+use crate::boundary::BoundaryImpulse;
+use crate::boundary::impulse::Taken;
 use crate::boundary::walls::Walls;
 use crate::diagnostics::Diagnostics;
 use crate::dispatch;
@@ -113,6 +115,9 @@ pub trait Simulate: Send {
     fn snapshot(&self, fields: &[Field]) -> Snapshot;
     /// Totals now. Sorts first if the next substep would: the run's bits do not change.
     fn diagnostics(&mut self) -> Diagnostics;
+    /// What each wall has taken from the material since the start, in the order of the sides. The
+    /// difference of two moments over the time between is the mean force.
+    fn boundary_impulses(&self) -> Vec<BoundaryImpulse>;
     /// Gives the simulation a clock that returns seconds, for [`Simulate::phase_times`].
     fn set_clock(&mut self, clock: fn() -> f64);
     /// Seconds by phase since the clock was given.
@@ -161,6 +166,8 @@ pub struct Simulation<T: Instance<D>, const D: usize> {
     /// Cells that particles may have moved since they were sorted.
     drift: f64,
     pointer: Option<Pointer>,
+    /// By the number of the domain's side, what it has taken since the start; lengths in metres.
+    taken: Vec<Taken<D>>,
     pub(crate) escaped: Escaped,
     pub(crate) control: StepControl,
     /// Where each particle started \[m\], by id, if a force asks for it.
@@ -224,13 +231,14 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         let mut simulation = Self {
             walls,
             origin: setup.domain.as_ref().map_or([0.0; D], |domain| domain.min),
-            grid: Grid::new(scheme.kernel_nodes(), scheme.planes()),
+            grid: Grid::new(scheme),
             scheme,
             isa: IsaToken(level),
             groups,
             sorter: Sorter::default(),
             drift: 0.0,
             pointer: None,
+            taken: vec![Taken::NOTHING; 2 * D],
             escaped: Escaped::default(),
             control: StepControl::new(setup.time_step, setup.dx),
             starts: setup
@@ -504,6 +512,9 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         self.scatter(dt); // (1)–(4)
         self.update(dt);
         self.gather(dt, limit)?; // (5)–(8)
+        for (total, taken) in self.taken.iter_mut().zip(&self.grid.taken) {
+            total.add_scaled(taken, self.setup.dx, self.origin);
+        }
         self.control.taken(dt, limit);
         Ok(())
     }
@@ -915,6 +926,15 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
     fn diagnostics(&mut self) -> Diagnostics {
         self.sort_if_drifted();
         crate::diagnostics::measure(self)
+    }
+
+    fn boundary_impulses(&self) -> Vec<BoundaryImpulse> {
+        let of_side = |(name, side): (&str, usize)| BoundaryImpulse {
+            name: name.into(),
+            impulse: three(self.taken[side].impulse.0),
+            angular_impulse: self.taken[side].angular,
+        };
+        self.walls.sides().map(of_side).collect()
     }
 
     fn set_clock(&mut self, clock: fn() -> f64) {

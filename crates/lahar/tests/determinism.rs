@@ -43,6 +43,11 @@ fn same_bits_on_any_number_of_threads<T: Instance<D>, const D: usize>(
             bits(&one.snapshot(ALL)) == bits(&other.snapshot(ALL)),
             "{threads} threads differ from one"
         );
+        assert_eq!(
+            one.boundary_impulses(),
+            other.boundary_impulses(),
+            "{threads} threads differ from one in what walls took"
+        );
     }
 }
 

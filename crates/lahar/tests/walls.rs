@@ -210,9 +210,12 @@ fn a_body_that_leaves_a_separate_wall_keeps_its_velocity() {
     }
 }
 
-/// A tank at rest, filled wall to wall, with the pressure of its depth.
-fn tank<T: Instance<D>, const D: usize>(walls: Contact) -> (f64, f64) {
-    let (dx, depth, g, sound_speed) = (0.05, 0.5, 9.81, 20.0);
+const DEPTH: f64 = 0.5; // m
+const GRAVITY: f64 = 9.81; // m/s²
+
+/// A tank, filled wall to wall, with the pressure of its depth.
+fn filled<const D: usize>(walls: Contact) -> (Setup<D>, ParticleBatch<D>) {
+    let (dx, depth, g, sound_speed) = (0.05, DEPTH, GRAVITY, 20.0);
     let mut gravity = [0.0; D];
     gravity[D - 1] = -g;
     let setup = Setup {
@@ -231,9 +234,22 @@ fn tank<T: Instance<D>, const D: usize>(walls: Contact) -> (f64, f64) {
     // p = ρ₀c² (e^{g(H−y)/c²} − 1)
     let jacobian = |x: &[f64; D]| (-g * (depth - x[D - 1]) / (sound_speed * sound_speed)).exp();
     batch.deformation = Deformation::Jacobian(batch.position.iter().map(jacobian).collect());
-    let start = batch.position.clone();
-    let mut simulation = Simulation::<T, D>::new(setup, &[batch]).unwrap();
-    simulation.advance_to(0.5).unwrap();
+    (setup, batch)
+}
+
+/// A filled tank, left alone for `time` \[s\].
+fn resting<T: Instance<D>, const D: usize>(walls: Contact, time: f64) -> Simulation<T, D> {
+    let (setup, batch) = filled(walls);
+    let mut simulation = Simulation::new(setup, &[batch]).unwrap();
+    simulation.advance_to(time).unwrap();
+    simulation
+}
+
+/// The largest speed over √(gH) and the largest move over H of a tank that was left alone.
+fn tank<T: Instance<D>, const D: usize>(walls: Contact) -> (f64, f64) {
+    let start = filled::<D>(walls).1.position;
+    let simulation = resting::<T, D>(walls, 0.5);
+    let (depth, g) = (DEPTH, GRAVITY);
     let speed = field::<D>(&simulation, Field::Velocity)
         .iter()
         .map(|v| v.iter().map(|v| v * v).sum::<f64>().sqrt())
@@ -294,4 +310,112 @@ fn a_block_slides_on_by_coulomb_s_law() {
     assert!((slowed - 1.0).abs() < 0.01, "{slowed} of μ g t");
     simulation.advance_to(1.0).unwrap();
     assert!(mean(&simulation).abs() < 0.01, "{}", mean(&simulation));
+}
+
+/// A block of water thrown into a corner of a tank, as far from balance as can be: by how much the
+/// change of its momentum differs from gravity's impulse less what the walls took, relative to the
+/// sum of all that they took.
+fn imbalance<T: Instance<D>, const D: usize>(
+    transfer: Transfer,
+    style: WallStyle,
+    contact: Contact,
+) -> f64 {
+    let (dx, dt, steps) = (0.05, 5e-4, 400);
+    let mut gravity = [0.0; D];
+    gravity[1] = -9.81;
+    let setup = Setup {
+        gravity,
+        transfer,
+        time_step: TimeStep::Fixed(dt),
+        domain: Some(Domain {
+            min: [-0.3; D],
+            max: [0.3; D],
+            sides: [both(contact); D],
+            style,
+        }),
+        ..Setup::new(dx, vec![fluid(20.0, 0.0)])
+    };
+    let mut batch = lattice([-0.2; D], [0.05; D], dx);
+    let mut velocity = [-1.0; D];
+    velocity[0] = -3.0;
+    batch.velocity = vec![velocity];
+    let mut simulation = Simulation::<T, D>::new(setup, &[batch]).unwrap();
+    let before = simulation.diagnostics();
+    for _ in 0..steps {
+        simulation.substep().unwrap();
+    }
+    let after = simulation.diagnostics();
+    let walls = simulation.boundary_impulses();
+    assert_eq!(walls.len(), 2 * D);
+    let (mut worst, mut all) = (0.0_f64, 0.0_f64);
+    for axis in 0..D {
+        let taken: f64 = walls.iter().map(|wall| wall.impulse[axis]).sum();
+        all += walls.iter().map(|w| w.impulse[axis].abs()).sum::<f64>();
+        let given = after.mass * gravity[axis] * dt * f64::from(steps);
+        let gained = after.momentum[axis] - before.momentum[axis];
+        worst = worst.max((gained + taken - given).abs());
+    }
+    assert!(all > 0.5 * after.mass, "the walls have hardly been touched");
+    worst / all
+}
+
+/// Nothing gives or takes momentum but gravity and walls, whose account is exact.
+#[test]
+fn what_walls_take_is_what_the_material_loses() {
+    let nodes = WallStyle::Nodes { padding: 2 };
+    for contact in [
+        SLIP,
+        SEPARATE,
+        Contact::Sticky,
+        Contact::Slip { friction: 0.3 },
+        Contact::Separate { friction: 0.3 },
+    ] {
+        for transfer in [
+            Transfer::Pic,
+            Transfer::Flip { blend: 0.95 },
+            Transfer::Apic,
+        ] {
+            for style in [WallStyle::Plane, nodes] {
+                let error = imbalance::<f64, 2>(transfer, style, contact);
+                assert!(
+                    error < 1e-12,
+                    "{contact:?} {transfer:?} {style:?}: {error:e}"
+                );
+            }
+        }
+        for style in [WallStyle::Plane, nodes] {
+            let error = imbalance::<f64, 3>(Transfer::Apic, style, contact);
+            assert!(error < 1e-12, "3D {contact:?} {style:?}: {error:e}");
+        }
+        let error = imbalance::<f32, 3>(Transfer::Apic, WallStyle::Plane, contact);
+        assert!(error < 1e-4, "3D f32 {contact:?}: {error:e}");
+    }
+}
+
+/// In a tank at rest the floor carries the weight, each side the pressure on it, and their torques are
+/// those of pressure that grows with depth.
+#[test]
+fn walls_of_a_tank_at_rest_carry_its_pressure() {
+    let (simulation, time) = (resting::<f32, 2>(SEPARATE, 0.5), 0.5);
+    let (depth, g) = (DEPTH, GRAVITY);
+    let weight = DENSITY * g * depth;
+    let thrust = 0.5 * DENSITY * g * depth * depth;
+    // Name, force, torque about the lower left corner.
+    let expected = [
+        ("left", [-thrust, 0.0], thrust * depth / 3.0),
+        ("right", [thrust, 0.0], -thrust * depth / 3.0),
+        ("bottom", [0.0, -weight], -0.5 * weight),
+        ("top", [0.0, 0.0], 0.0),
+    ];
+    let found = simulation.boundary_impulses();
+    assert_eq!(found.len(), expected.len());
+    for (wall, (name, force, torque)) in found.iter().zip(expected) {
+        assert_eq!(wall.name, name);
+        for axis in 0..2 {
+            let error = (wall.impulse[axis] / time - force[axis]) / weight;
+            assert!(error.abs() < 2e-3, "{name}: force off by {error} weights");
+        }
+        let error = (wall.angular_impulse[2] / time - torque) / weight;
+        assert!(error.abs() < 2e-3, "{name}: torque off by {error}");
+    }
 }

@@ -1,8 +1,11 @@
 //! What stops the material: contact laws × shapes, as plain data.
 
 pub(crate) mod contact;
+pub(crate) mod impulse;
 mod pointer;
 pub(crate) mod walls;
+
+pub use impulse::BoundaryImpulse;
 
 /// The box that holds a scene.
 #[derive(Clone, Debug, PartialEq)]

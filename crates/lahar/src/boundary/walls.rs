@@ -1,5 +1,6 @@
 //! The domain's walls as the nodes see them.
 
+use super::impulse::{SIDES, Taken};
 use super::{Contact, Corners, Cushion, Domain, Sides, WallStyle};
 use crate::error::SetupError;
 use crate::math::{Scalar, Vector};
@@ -25,6 +26,18 @@ pub(crate) struct Plane {
     /// +1: the domain is on the side of higher indices; −1: of lower ones.
     pub(crate) inward: i8,
     pub(crate) contact: Contact,
+}
+
+impl Plane {
+    /// The number of the domain's side that it is.
+    pub(crate) fn side(&self) -> usize {
+        side(self.axis, self.inward < 0)
+    }
+}
+
+/// The number of a side of the domain: axis after axis, low before high.
+const fn side(axis: usize, high: bool) -> usize {
+    2 * axis + high as usize
 }
 
 /// The walls of a domain in node indices; nothing at all when unbounded.
@@ -203,6 +216,22 @@ impl<const D: usize> Walls<D> {
         Ok(())
     }
 
+    /// Names of the domain's sides with walls, and their numbers.
+    pub(crate) fn sides(&self) -> impl Iterator<Item = (&'static str, usize)> {
+        let is_wall = |side: usize| {
+            let (axis, high) = (side / 2, side % 2 == 1);
+            let end = if high {
+                self.high[axis]
+            } else {
+                self.low[axis]
+            };
+            end.is_some() || self.planes.iter().any(|plane| plane.side() == side)
+        };
+        (0..2 * D)
+            .filter(move |&side| is_wall(side))
+            .map(|side| (SIDES[side / 2][side % 2], side))
+    }
+
     /// Whether any node of `first .. first + edge` on each axis is in a wall of
     /// [`WallStyle::Nodes`].
     pub(crate) fn touch(&self, first: [i64; D], edge: usize) -> bool {
@@ -212,24 +241,26 @@ impl<const D: usize> Walls<D> {
         })
     }
 
-    /// The velocity of node `node` after the walls of [`WallStyle::Nodes`] have acted on it, axis
-    /// after axis.
+    /// The velocity of node `node` of `mass` after the walls of [`WallStyle::Nodes`] have acted on
+    /// it, axis after axis; adds what they take to `taken`, by the number of the side.
     #[inline(always)]
     pub(crate) fn constrain<T: Scalar>(
         &self,
         mut velocity: Vector<T, D>,
         node: [i64; D],
+        mass: T,
+        taken: &mut [Taken<D>],
     ) -> Vector<T, D> {
         for axis in 0..D {
-            if let Some(end) = self.low[axis]
-                && node[axis] <= end.node
-            {
-                velocity = end.contact.constrain(velocity, axis, 1.0);
-            }
-            if let Some(end) = self.high[axis]
-                && node[axis] >= end.node
-            {
-                velocity = end.contact.constrain(velocity, axis, -1.0);
+            let low = self.low[axis].filter(|end| node[axis] <= end.node);
+            let high = self.high[axis].filter(|end| node[axis] >= end.node);
+            for (end, inward) in [(low, 1.0), (high, -1.0)] {
+                let Some(end) = end else { continue };
+                let free = velocity;
+                velocity = end.contact.constrain(free, axis, inward);
+                let change = Vector::from_fn(|i| (velocity[i] - free[i]).to_f64());
+                let at = node.map(|node| node as f64);
+                taken[side(axis, inward < 0.0)].add(at, change * -mass.to_f64()); // (12)
             }
         }
         velocity

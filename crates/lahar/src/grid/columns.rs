@@ -2,6 +2,7 @@
 
 use super::{BLOCK_NODES, QUAD, axis_index};
 use crate::boundary::contact::{Column, ColumnNode};
+use crate::boundary::impulse::Taken;
 use crate::boundary::walls::{Plane, Walls};
 use crate::math::{Lanes, Vector};
 use crate::store::block_edge;
@@ -10,19 +11,29 @@ use crate::store::block_edge;
 #[derive(Clone, Copy, Debug)]
 struct NodePlace(u32);
 
-/// Beyond the wall, on its plane, inside; none where there is no block.
-type Places = [Option<NodePlace>; 3];
+/// A node on a wall and its neighbours across.
+#[derive(Clone, Copy, Debug)]
+struct Places<const D: usize> {
+    /// Beyond the wall, on its plane, inside; none where there is no block.
+    across: [Option<NodePlace>; 3],
+    /// The index on each axis of the node on the plane.
+    node: [i32; D],
+}
 
 /// For each of [`Walls::planes`], its columns of nodes in the blocks that there are.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Columns<const D: usize>(Vec<Vec<Places>>);
+pub(super) struct Columns<const D: usize> {
+    walls: Vec<Vec<Places<D>>>,
+    /// The masses of all columns' nodes, before the first wall has acted \[kg\].
+    masses: Vec<[f64; 3]>,
+}
 
 impl<const D: usize> Columns<D> {
     /// Finds the nodes on walls, and their neighbours across, among `blocks`, which are ascending.
     pub(super) fn find(&mut self, blocks: &[[i32; D]], walls: &Walls<D>) {
         let edge = block_edge(D) as i64;
-        self.0.resize(walls.planes.len(), Vec::new());
-        for (columns, wall) in self.0.iter_mut().zip(&walls.planes) {
+        self.walls.resize(walls.planes.len(), Vec::new());
+        for (columns, wall) in self.walls.iter_mut().zip(&walls.planes) {
             columns.clear();
             let of_wall = wall.node.div_euclid(edge);
             for block in blocks {
@@ -33,16 +44,36 @@ impl<const D: usize> Columns<D> {
         }
     }
 
-    /// Lets the walls act on the velocities in `nodes`, of `planes` planes.
-    pub(super) fn fold<T: Lanes>(&self, nodes: &mut [T], planes: usize, walls: &Walls<D>) {
+    /// Lets the walls act on the velocities in `nodes`, of `planes` planes. Adds what they take from
+    /// particles that keep `blend` of their own velocities to `taken`, by [`Plane::side`].
+    pub(super) fn fold<T: Lanes>(
+        &mut self,
+        nodes: &mut [T],
+        planes: usize,
+        walls: &Walls<D>,
+        blend: f64,
+        taken: &mut [Taken<D>],
+    ) {
         let _flush = crate::float_mode::FlushToZero::enter();
-        for (columns, wall) in self.0.iter().zip(&walls.planes) {
-            for places in columns {
-                let [beyond, plane, inside] =
-                    places.map(|place| read::<T, D>(nodes, planes, place));
+        // Folding changes masses, and in corners a second wall finds them changed; particles have the
+        // masses that they brought.
+        self.masses.clear();
+        for places in self.walls.iter().flatten() {
+            self.masses.push(places.across.map(|place| {
+                place.map_or(0.0, |place| nodes[quad_at(place, planes) + 3].to_f64())
+            }));
+        }
+        let mut masses = self.masses.iter();
+        for (columns, wall) in self.walls.iter().zip(&walls.planes) {
+            let taken = &mut taken[wall.side()];
+            for (places, masses) in columns.iter().zip(&mut masses) {
+                let [beyond, plane, inside] = places
+                    .across
+                    .map(|place| read::<T, D>(nodes, planes, place));
                 if plane.mass <= T::default() {
                     continue;
                 }
+                let free = [beyond, plane, inside];
                 let mut column = Column {
                     beyond,
                     plane,
@@ -52,9 +83,18 @@ impl<const D: usize> Columns<D> {
                 if !wall.contact.fold(&mut column, wall.axis, inward) {
                     continue;
                 }
-                let folded = [&column.beyond, &column.plane, &column.inside];
-                for (place, node) in places.iter().zip(folded) {
+                let folded = [column.beyond, column.plane, column.inside];
+                for (place, node) in places.across.iter().zip(&folded) {
                     write(nodes, planes, *place, node);
+                }
+                for (k, step) in (-1..=1).enumerate() {
+                    let change = Vector::from_fn(|axis| {
+                        (folded[k].velocity[axis] - free[k].velocity[axis]).to_f64()
+                            - blend * (folded[k].before[axis] - free[k].before[axis]).to_f64()
+                    });
+                    let mut at = places.node.map(f64::from);
+                    at[wall.axis] += f64::from(wall.inward) * f64::from(step);
+                    taken.add(at, change * -masses[k]); // (12)
                 }
             }
         }
@@ -66,7 +106,7 @@ fn push_columns<const D: usize>(
     block: [i32; D],
     blocks: &[[i32; D]],
     wall: &Plane,
-    columns: &mut Vec<Places>,
+    columns: &mut Vec<Places<D>>,
 ) {
     let edge = block_edge(D) as i64;
     let inward = i64::from(wall.inward);
@@ -85,10 +125,15 @@ fn push_columns<const D: usize>(
     for index in 0..BLOCK_NODES {
         if axis_index::<D>(index, wall.axis) == on_plane {
             let foot = index - on_plane * stride;
-            columns.push(across.map(|(block, local)| {
-                let node = foot + local * stride;
-                block.map(|block| NodePlace((block * BLOCK_NODES + node) as u32))
-            }));
+            columns.push(Places {
+                across: across.map(|(block, local)| {
+                    let node = foot + local * stride;
+                    block.map(|block| NodePlace((block * BLOCK_NODES + node) as u32))
+                }),
+                node: core::array::from_fn(|axis| {
+                    block[axis] * edge as i32 + axis_index::<D>(index, axis) as i32
+                }),
+            });
         }
     }
 }
