@@ -63,6 +63,8 @@ pub struct AppState {
     pub held: Option<(V3, Grip)>,
     /// Whether the list of scenes is open.
     pub show_scenes: bool,
+    /// What was typed to find a scene, and which of those found Enter opens.
+    pub search: (String, usize),
     /// Small pictures of the scenes, by name; they come one by one.
     pub thumbnails: HashMap<String, egui::TextureHandle>,
     /// Whether the hints are in sight.
@@ -130,6 +132,7 @@ impl AppState {
             hand: Hand::of(Controls::default(), EARTH, 1.0, 0.01),
             held: None,
             show_scenes: false,
+            search: (String::new(), 0),
             thumbnails: HashMap::new(),
             // They would lie over one of the sides.
             show_hints: wanted.comparison.is_none(),
@@ -209,6 +212,8 @@ impl AppState {
             }
             Action::SceneList => {
                 self.show_scenes = !self.show_scenes;
+                let here = self.scenes.iter().position(|card| card.name == self.scene);
+                self.search = (String::new(), here.unwrap_or(0));
                 if !core::mem::replace(&mut self.asked_for_thumbnails, true) {
                     self.effects.push(Effect::Thumbnails);
                 }

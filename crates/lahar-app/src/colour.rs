@@ -2,6 +2,7 @@
 
 use eframe::egui::Color32;
 use lahar::{Field, Snapshot};
+use lahar_io::image::{Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along};
 
 use crate::scenes::{Facts, Look, Swatch};
 
@@ -106,13 +107,19 @@ impl ColourBy {
     }
 
     /// The colours of its range, low to high, evenly spaced.
-    pub fn ramp(self) -> &'static [Color32] {
+    pub fn ramp(self) -> &'static [Colour] {
         match self {
             Self::Material => &[],
-            Self::Speed => &SEQUENTIAL,
-            Self::Pressure => &WARM,
-            Self::Density | Self::Jacobian => &DIVERGING,
+            Self::Speed => &SPEED_RAMP,
+            Self::Pressure => &PRESSURE_RAMP,
+            Self::Density | Self::Jacobian => &REST_RAMP,
         }
+    }
+
+    /// The colour at `at` in 0..=1 of that range.
+    pub fn along(self, at: f32) -> Color32 {
+        let [r, g, b] = along(self.ramp(), at);
+        Color32::from_rgb(r, g, b)
     }
 
     /// The range of a sample of values worth telling apart.
@@ -136,26 +143,6 @@ impl ColourBy {
 
 /// Particles looked at to find a range.
 const SAMPLE: usize = 4096;
-
-const SEQUENTIAL: [Color32; 5] = [
-    Color32::from_rgb(0x0d, 0x5c, 0x86),
-    Color32::from_rgb(0x0d, 0x97, 0x9b),
-    Color32::from_rgb(0x7f, 0xd0, 0x9c),
-    Color32::from_rgb(0xf5, 0xe3, 0x8b),
-    Color32::from_rgb(0xff, 0xff, 0xff),
-];
-const WARM: [Color32; 5] = [
-    Color32::from_rgb(0x3b, 0x3a, 0x8c),
-    Color32::from_rgb(0x8a, 0x44, 0xa6),
-    Color32::from_rgb(0xdb, 0x4d, 0x6d),
-    Color32::from_rgb(0xf9, 0x96, 0x4d),
-    Color32::from_rgb(0xfc, 0xf3, 0xa8),
-];
-const DIVERGING: [Color32; 3] = [
-    Color32::from_rgb(0x3d, 0x86, 0xe0),
-    Color32::from_rgb(0xe4, 0xe8, 0xea),
-    Color32::from_rgb(0xed, 0x55, 0x3b),
-];
 
 fn around(centre: f32, low: f32, high: f32) -> (f32, f32) {
     let reach = (centre - low).max(high - centre).max(centre.abs() * 1e-3);
@@ -208,20 +195,6 @@ impl Range {
     }
 }
 
-/// The colour at `at` in 0..=1 of a ramp.
-pub fn along(ramp: &[Color32], at: f32) -> Color32 {
-    let Some(last) = ramp.len().checked_sub(1) else {
-        return Color32::GRAY;
-    };
-    if !at.is_finite() {
-        return Color32::from_rgb(0xff, 0x00, 0xff); // not a number: cannot be overlooked
-    }
-    let at = at.clamp(0.0, 1.0) * last as f32;
-    let i = (at as usize).min(last.saturating_sub(1));
-    let (a, b) = (ramp[i], ramp[(i + 1).min(last)]);
-    a.lerp_to_gamma(b, at - i as f32)
-}
-
 /// Colours of the swatches at first; the person at the window may change them.
 pub fn palette(swatches: &[Swatch]) -> Vec<Color32> {
     /// For the second of a look, and for what has none.
@@ -268,9 +241,9 @@ pub fn colours(
         let (low, high) = range.ends();
         // 256 steps are as fine as the screen shows, and cheaper than a blend a particle.
         let steps: Vec<_> = (0..256)
-            .map(|i| along(by.ramp(), i as f32 / 255.0).to_array())
+            .map(|i| by.along(i as f32 / 255.0).to_array())
             .collect();
-        let not_a_number = along(by.ramp(), f32::NAN).to_array();
+        let not_a_number = by.along(f32::NAN).to_array();
         return values
             .iter()
             .map(|v| {
@@ -309,14 +282,6 @@ mod tests {
             by = by.next();
         }
         assert_eq!(by, ColourBy::Material);
-    }
-
-    #[test]
-    fn a_ramp_begins_and_ends_with_its_ends() {
-        assert_eq!(along(&SEQUENTIAL, 0.0), SEQUENTIAL[0]);
-        assert_eq!(along(&SEQUENTIAL, 1.0), SEQUENTIAL[4]);
-        assert_eq!(along(&SEQUENTIAL, 7.0), SEQUENTIAL[4]);
-        assert_eq!(along(&DIVERGING, 0.5), DIVERGING[1]);
     }
 
     #[test]

@@ -208,7 +208,7 @@ const REPLAY: &[Hint] = &[
 
 /// Keys of both.
 const ALWAYS: &[Hint] = &[
-    hint("1 to 9", "choose a scene, L: list of scenes"),
+    hint("1 to 9", "choose a scene, L: any of them, by typing"),
     hint("+ -", "faster, slower"),
     hint("C", "colours: material, speed, pressure, density, J"),
     hint("Shift, Ctrl+arrows", "orbit, move the view"),
@@ -223,8 +223,18 @@ const HAND_2D: &[Hint] = &[
     hint("Ctrl+drag", "drag along"),
 ];
 
+const PUSH_2D: &[Hint] = &[
+    hint("left, right button", "push, pull"),
+    hint("Ctrl+drag", "drag along"),
+];
+
 const HAND_3D: &[Hint] = &[
     hint("Shift+left, right", "attract, repel"),
+    hint("Ctrl+drag", "drag along"),
+];
+
+const PUSH_3D: &[Hint] = &[
+    hint("Shift+left, right", "push, pull"),
     hint("Ctrl+drag", "drag along"),
 ];
 
@@ -235,12 +245,14 @@ const VIEW_3D: &[Hint] = &[
     hint("wheel, middle-drag", "zoom, pan"),
 ];
 
-/// The keys and the mouse for people, for what is in sight.
-pub fn hints(recorded: bool, dimension: usize) -> Vec<Hint> {
-    let (hand, view) = if dimension == 3 {
-        (HAND_3D, VIEW_3D)
-    } else {
-        (HAND_2D, VIEW_2D)
+/// The keys and the mouse for people, for what is in sight: a recording or a simulation, and a hand
+/// that `pushes` or attracts.
+pub fn hints(recorded: bool, dimension: usize, pushes: bool) -> Vec<Hint> {
+    let (hand, view) = match (dimension, pushes) {
+        (3, false) => (HAND_3D, VIEW_3D),
+        (3, true) => (PUSH_3D, VIEW_3D),
+        (_, false) => (HAND_2D, VIEW_2D),
+        (_, true) => (PUSH_2D, VIEW_2D),
     };
     if recorded {
         [REPLAY, ALWAYS, view].concat()

@@ -17,6 +17,8 @@ pub struct Hand {
     pub pull: f64,
     /// Within which that goes to zero \[m\].
     pub softening: f64,
+    /// It pushes particles, by (distance/reach) to this power.
+    pub push: Option<f64>,
 }
 
 /// Reach, in parts of the scene's smallest extent, where the scene does not say.
@@ -32,6 +34,27 @@ impl Hand {
             reach: controls.reach.unwrap_or(REACH * smallest),
             pull: controls.pull.unwrap_or(PULL * gravity),
             softening: controls.softening.unwrap_or(dx),
+            push: controls.push,
+        }
+    }
+
+    /// What the left button does, and the right.
+    pub fn buttons(&self) -> [Grip; 2] {
+        if self.push.is_some() {
+            [Grip::Repel, Grip::Attract]
+        } else {
+            [Grip::Attract, Grip::Repel]
+        }
+    }
+
+    /// With `pull` towards it \[m/s²\], negative: away from it.
+    fn action(&self, pull: f64) -> PointerAction {
+        match self.push {
+            Some(power) => PointerAction::Push {
+                acceleration: -pull,
+                power,
+            },
+            None => PointerAction::Attract(pull),
         }
     }
 }
@@ -58,8 +81,8 @@ impl AppState {
         let position = camera.unproject(at, self.aspect, through);
         let pull = self.hand.pull;
         let action = match grip {
-            Grip::Attract => PointerAction::Attract(pull),
-            Grip::Repel => PointerAction::Attract(-pull),
+            Grip::Attract => self.hand.action(pull),
+            Grip::Repel => self.hand.action(-pull),
             Grip::Drag => {
                 let ahead = [at[0] + velocity[0], at[1] + velocity[1]];
                 let there = camera.unproject(ahead, self.aspect, through);

@@ -83,7 +83,7 @@ pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     for i in 0..steps {
         let at = |k: i32| bar.bottom() - bar.height() * k as f32 / steps as f32;
         let strip = Rect::from_x_y_ranges(bar.x_range(), at(i + 1)..=at(i));
-        let colour = colour::along(state.colour_by.ramp(), (i as f32 + 0.5) / steps as f32);
+        let colour = state.colour_by.along((i as f32 + 0.5) / steps as f32);
         painter.rect_filled(strip, CornerRadius::ZERO, colour);
     }
     let (low, high) = state.range.ends();
@@ -202,7 +202,11 @@ pub(crate) fn status(state: &AppState, ui: &Ui, rect: Rect, side: usize) {
 /// The keys at the upper right, where scenes have their air; the scenes along the bottom.
 pub(crate) fn hints(state: &AppState, ui: &Ui, rect: Rect) {
     let dimension = state.facts().map_or(2, |facts| facts.dimension);
-    let rows = controls::hints(state.recorded_frames().is_some(), dimension);
+    let rows = controls::hints(
+        state.recorded_frames().is_some(),
+        dimension,
+        state.hand.push.is_some(),
+    );
     let font = FontId::proportional(12.0);
     let painter = ui.painter_at(rect);
     let height = 16.0;

@@ -379,7 +379,7 @@ fn hand(state: &mut AppState, ui: &mut Ui) {
             .suffix(" m/s²")
             .text("hand"),
     )
-    .on_hover_text("How hard the mouse attracts and repels");
+    .on_hover_text("How hard the mouse attracts and repels, pushes and pulls");
     let dimension = state.facts().map_or(2, |facts| facts.dimension);
     let smallest = state.scenery.smallest(dimension);
     ui.horizontal(|ui| {

@@ -166,6 +166,7 @@ fn pointer(state: &mut AppState, ui: &Ui, cells: &[Rect], response: &egui::Respo
     let by = response.drag_delta() / rect.height();
     let (x, y) = (f64::from(by.x), f64::from(-by.y));
     let recorded = state.recorded_frames().is_some();
+    let [of_left, of_right] = state.hand.buttons();
     let grip = if recorded {
         None
     } else if modifiers.ctrl && left {
@@ -173,9 +174,9 @@ fn pointer(state: &mut AppState, ui: &Ui, cells: &[Rect], response: &egui::Respo
     } else if solid && !modifiers.shift {
         None
     } else if left {
-        Some(Grip::Attract)
+        Some(of_left)
     } else if right {
-        Some(Grip::Repel)
+        Some(of_right)
     } else {
         None
     };

@@ -222,6 +222,17 @@ impl Plan {
                 "body" => Colouring::Body,
                 "speed" => Colouring::Speed(scenery.speed.max(1e-3)),
                 "pressure" => Colouring::Pressure(0.0, self.pressure_scale(scenery)),
+                "density" => {
+                    let squeeze = self.squeeze(scenery);
+                    let densities = || self.scene.materials.iter().map(|m| m.density);
+                    let least = densities().fold(f64::INFINITY, f64::min);
+                    let most = densities().fold(0.0, f64::max);
+                    Colouring::Density(least * (1.0 - squeeze), most * (1.0 + squeeze))
+                }
+                "J" => {
+                    let squeeze = self.squeeze(scenery);
+                    Colouring::Jacobian(1.0 - squeeze, 1.0 + squeeze)
+                }
                 _ => Colouring::Material,
             },
             ..Style::default()
@@ -269,6 +280,15 @@ impl Plan {
             .map(|material| material.density)
             .fold(0.0, f64::max);
         (density * scenery.speed * scenery.speed * 0.5).max(f64::MIN_POSITIVE)
+    }
+
+    /// By how much of its volume such a column compresses its foot, in the softest material.
+    fn squeeze(&self, scenery: &Scenery) -> f64 {
+        let softest = (self.scene.materials.iter())
+            .map(|material| material.wave_speed)
+            .filter(|speed| *speed > 0.0)
+            .fold(f64::INFINITY, f64::min);
+        (0.5 * (scenery.speed / softest).powi(2)).clamp(1e-3, 0.5)
     }
 }
 

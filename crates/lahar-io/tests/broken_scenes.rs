@@ -418,6 +418,21 @@ const BROKEN: &[(&str, &str, &str)] = &[
         "dx = 0.05",
         "dx = 0.05\nkernel = \"linear\"",
     ),
+    (
+        "a formula as spin",
+        "material = \"water\"",
+        "material = \"water\"\nspin = \"2*x\"",
+    ),
+    (
+        "a formula as spin in 3D",
+        "dx = 0.05\n\n[domain]\nmin = [0.0, 0.0]\nmax = [2.0, 1.0]\n",
+        "dx = 0.05\ndimension = 3\n[domain]\nmin = [0.0, 0.0, 0.0]\nmax = [2.0, 1.0, 1.0]\n[[bodies]]\nspin = [0.0, \"x\", 1.0]\n",
+    ),
+    (
+        "formulas as a velocity gradient",
+        "material = \"water\"",
+        "material = \"water\"\nvelocity_gradient = [[0.0, \"sin(x)\"], [0.0, 0.0]]",
+    ),
     ("four dimensions", "dx = 0.05", "dx = 0.05\ndimension = 4"),
     (
         "substeps without dt",

@@ -5,6 +5,7 @@
 //! reached through [`Instance`], whose four implementations are concrete and so belong to this
 //! crate alone.
 
+use crate::boundary::pointer::Push;
 use crate::boundary::walls::Walls;
 use crate::grid::{Grid, NodeForces};
 use crate::material::{IsaToken, Law, Model};
@@ -62,6 +63,7 @@ pub trait Kernels<const D: usize>: Lanes {
         group: &mut Group<Self, D>,
         grid: &Grid<Self, D>,
         walls: &Walls<D>,
+        push: Option<&Push<D>>,
         scheme: Scheme,
         isa: IsaToken,
         dt: f64,
@@ -111,11 +113,12 @@ macro_rules! instance {
                 group: &mut Group<Self, $d>,
                 grid: &Grid<Self, $d>,
                 walls: &Walls<$d>,
+                push: Option<&Push<$d>>,
                 scheme: Scheme,
                 isa: IsaToken,
                 dt: f64,
             ) -> Bounds {
-                gather::gather(group, grid, walls, scheme, isa, dt)
+                gather::gather(group, grid, walls, push, scheme, isa, dt)
             }
         }
     )*};

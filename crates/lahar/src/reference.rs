@@ -16,13 +16,16 @@
 
 use crate::boundary::contact::{Column, ColumnNode};
 use crate::boundary::impulse::Taken;
+use crate::boundary::pointer::Push;
 use crate::boundary::walls::Walls;
 use crate::error::SetupError;
 use crate::forces;
+use crate::grid::NodePointer;
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
 use crate::material::{ConstitutiveModel, Model, Strain, for_model};
 use crate::math::{Matrix, Vector};
 use crate::setup::{Deformation, ForceForm, Kernel, ParticleBatch, Setup, Transfer};
+use crate::simulation::Pointer;
 use std::collections::BTreeMap;
 
 /// A particle of the oracle.
@@ -88,6 +91,7 @@ pub struct Reference<const D: usize> {
     starts: Vec<[f64; D]>,
     /// Simulated time \[s\].
     time: f64,
+    pointer: Option<Pointer>,
 }
 
 impl<const D: usize> Reference<D> {
@@ -118,6 +122,7 @@ impl<const D: usize> Reference<D> {
                 .map(|p: &Particle<D>| p.position.0)
                 .collect(),
             time: 0.0,
+            pointer: None,
             setup: setup.clone(),
             origin: Vector(origin),
             walls,
@@ -162,6 +167,11 @@ impl<const D: usize> Reference<D> {
     /// J − 1 of a particle.
     pub fn jacobian_minus_one(&self, particle: &Particle<D>) -> f64 {
         self.law(particle).jacobian_minus_one(&particle.strain)
+    }
+
+    /// Sets or lifts the hand that stirs.
+    pub fn set_pointer(&mut self, pointer: Option<Pointer>) {
+        self.pointer = pointer;
     }
 
     /// One substep of `dt` \[s\]. There is no check on its length.
@@ -286,6 +296,10 @@ impl<const D: usize> Reference<D> {
                 if let Some((kept, medium)) = forces::drag(all, dt) {
                     free = Vector(medium) + (free - Vector(medium)) * kept; // (10)
                 }
+                if let Some(pointer) = self.pointer {
+                    let pointer = NodePointer::of(pointer, self.origin.0, self.setup.dx);
+                    free = pointer.act(free, node, dt);
+                }
                 let velocity = Velocity {
                     mass: n.mass,
                     before,
@@ -346,6 +360,7 @@ impl<const D: usize> Reference<D> {
 
     /// G2P for a substep of `dt` \[s\].
     pub fn grid_to_particles(&mut self, grid: &Grid<Velocity<D>, D>, dt: f64) {
+        let push = Push::of(self.pointer, self.origin.0, self.setup.dx, dt);
         let mut particles = core::mem::take(&mut self.particles);
         for particle in &mut particles {
             let (mut pic, mut change) = (Vector([0.0; D]), Vector([0.0; D]));
@@ -382,6 +397,10 @@ impl<const D: usize> Reference<D> {
                 }
             };
             particle.affine = c;
+            self.hold(particle);
+            if let Some(push) = push {
+                particle.velocity = push.act(particle.velocity, self.in_cells(particle)); // (12)
+            }
             self.keep_in_domain(particle);
         }
         let (kept, gone) = particles.into_iter().partition(|p| !self.is_outside(p));
@@ -406,7 +425,6 @@ impl<const D: usize> Reference<D> {
 
     /// Periodic sides bring the particle in at the other end, a cushion slows it.
     fn keep_in_domain(&self, particle: &mut Particle<D>) {
-        self.hold(particle);
         let dx = self.setup.dx;
         for axis in 0..D {
             let x = &mut particle.position[axis];

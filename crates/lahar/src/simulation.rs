@@ -5,6 +5,7 @@
 
 use crate::boundary::BoundaryImpulse;
 use crate::boundary::impulse::Taken;
+use crate::boundary::pointer::Push;
 use crate::boundary::walls::Walls;
 use crate::diagnostics::Diagnostics;
 use crate::dispatch;
@@ -31,7 +32,7 @@ pub enum Command {
     Pointer(Option<Pointer>),
 }
 
-/// A hand in the scene: acts on the nodes near it, until it is lifted.
+/// A hand in the scene: acts on what is near it, until it is lifted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pointer {
     /// Where it is \[m\].
@@ -44,14 +45,23 @@ pub struct Pointer {
     pub action: PointerAction,
 }
 
-/// What a hand does to a node at the offset d from it.
+/// What a hand does to what is at the offset d from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PointerAction {
-    /// Accelerates towards the hand by this much times d/(|d| + softening) \[m/s²\]; negative: away
-    /// from it.
+    /// Accelerates nodes towards the hand by this much times d/(|d| + softening) \[m/s²\]; negative:
+    /// away from it.
     Attract(f64),
     /// Drags along: node velocities near the hand are drawn to this velocity \[m/s\].
     Drag([f64; 3]),
+    /// Accelerates each particle nearer than the radius away from the hand, by acceleration ×
+    /// (|d|/radius)^power; by the same everywhere if the radius is infinite. It acts where the
+    /// substep has moved the particle to, and moves it in the next.
+    Push {
+        /// At the radius \[m/s²\]; negative: towards the hand.
+        acceleration: f64,
+        /// How much weaker it is near the hand; 0: as strong anywhere within the radius.
+        power: f64,
+    },
 }
 
 /// What an advance did.
@@ -594,14 +604,8 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             gravity_impulse: Vector(self.setup.gravity.map(|g| T::from_f64(g * dt))),
             drag: forces::drag(&self.setup.forces, dt)
                 .map(|(kept, medium)| (T::from_f64(kept), Vector(medium.map(T::from_f64)))),
-            pointer: self.pointer.map(|pointer| NodePointer {
-                centre: core::array::from_fn(|axis| {
-                    (pointer.position[axis] - self.origin[axis]) / self.setup.dx
-                }),
-                radius: pointer.radius / self.setup.dx,
-                softening: pointer.softening / self.setup.dx,
-                action: pointer.action,
-            }),
+            pointer: (self.pointer)
+                .map(|pointer| NodePointer::of(pointer, self.origin, self.setup.dx)),
         };
         T::update(&mut self.grid, self.isa, &node_forces, &self.walls);
         if fields {
@@ -615,8 +619,10 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         let start = self.now();
         let (mut speed_squared, mut moved, mut wave_speed_squared) = (0.0_f64, 0.0_f64, 0.0_f64);
         let mut failure = None;
+        let push = Push::of(self.pointer, self.origin, self.setup.dx, dt);
         for (material, group) in self.groups.iter_mut().enumerate() {
-            let found = T::gather(group, &self.grid, &self.walls, self.scheme, self.isa, dt);
+            let (grid, walls) = (&self.grid, &self.walls);
+            let found = T::gather(group, grid, walls, push.as_ref(), self.scheme, self.isa, dt);
             speed_squared = speed_squared.max(found.speed_squared);
             moved = moved.max(found.moved);
             wave_speed_squared = wave_speed_squared.max(found.wave_modulus / group.density);

@@ -9,8 +9,8 @@ use common::brawl;
 use engine::{Engine, Fast, Oracle, State};
 use lahar::material::Dust;
 use lahar::{
-    AccelerationField, Command, Field, Force, Instance, Material, Model, ParticleBatch, Pointer,
-    PointerAction, Pull, Setup, Simulate, Simulation, TimeStep, Transfer,
+    AccelerationField, Force, Instance, Material, Model, ParticleBatch, Pull, Setup, Simulate,
+    Simulation, TimeStep, Transfer,
 };
 use std::sync::Arc;
 
@@ -303,53 +303,4 @@ fn what_cannot_be_is_named() {
     let (setup, batch) = grain(Transfer::Apic, vec![bad], [0.0; 2], [0.0; 2]);
     let error = Simulation::<f32, 2>::new(setup, &[batch]).err();
     assert_eq!(error.map(|error| error.key), Some("forces.0".to_owned()));
-}
-
-/// The hand's attraction, as mpm128 has it: a d/(|d| + softening) on each node, at any distance.
-#[test]
-fn the_hand_pulls_by_its_law() {
-    let (dx, dt, pull, softening) = (0.1, 1e-3, 100.0, 0.01);
-    let dust = Material {
-        name: "dust".into(),
-        density: 1.0,
-        model: Model::Dust(Dust),
-    };
-    let setup = Setup::<2> {
-        time_step: TimeStep::Fixed(dt),
-        gravity: [0.0; 2],
-        ..Setup::new(dx, vec![dust])
-    };
-    // On a node: of its stencil's 3 × 3 nodes an axis has weights 1/8, 3/4, 1/8.
-    let batch = ParticleBatch {
-        position: vec![[0.3, 0.5]],
-        volume: vec![dx * dx],
-        ..ParticleBatch::default()
-    };
-    let hand = [0.32, 0.1];
-    let mut simulation = Simulation::<f64, 2>::new(setup, &[batch]).unwrap();
-    simulation.command(Command::Pointer(Some(Pointer {
-        position: [hand[0], hand[1], 0.0],
-        radius: f64::INFINITY,
-        softening,
-        action: PointerAction::Attract(pull),
-    })));
-    simulation.substep().unwrap();
-    let weights = [0.125, 0.75, 0.125];
-    let mut expected = [0.0; 2];
-    for (i, w_i) in weights.iter().enumerate() {
-        for (j, w_j) in weights.iter().enumerate() {
-            let node = [0.2 + 0.1 * i as f64, 0.4 + 0.1 * j as f64];
-            let d = [hand[0] - node[0], hand[1] - node[1]];
-            let softened = d[0].hypot(d[1]) + softening;
-            for axis in 0..2 {
-                expected[axis] += w_i * w_j * pull * dt * d[axis] / softened;
-            }
-        }
-    }
-    let snapshot = simulation.snapshot(&[Field::Velocity]);
-    let velocity = snapshot.columns[0].1.to_f64();
-    for axis in 0..2 {
-        let error = (velocity[axis] - expected[axis]).abs();
-        assert!(error < 1e-12, "{velocity:?}, not {expected:?}");
-    }
 }

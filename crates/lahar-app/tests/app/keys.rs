@@ -1,7 +1,7 @@
 //! What keys do.
 
 use super::*;
-use eframe::egui::{Key, Modifiers};
+use eframe::egui::{Event, Key, Modifiers};
 use lahar::Command;
 use lahar_app::colour::ColourBy;
 
@@ -147,6 +147,46 @@ fn h_p_and_l_show_and_hide_f12_takes_a_picture_and_escape_leaves() {
     harness.key_press(Key::Escape);
     harness.run();
     assert_eq!(harness.state_mut().take_effects(), [Effect::Close]);
+}
+
+#[test]
+fn the_list_reaches_every_scene_by_keys() {
+    for (typed, downs, scene) in [
+        ("", 0, "held"),
+        ("", 1, "pushed"),
+        ("3d", 0, "dam-break-3d"),
+        ("  DAM  double", 0, "double-dam"),
+        ("dam", 2, "dam-break-3d"),
+        ("dam", 99, "dam-break-3d"),
+        ("held", 0, "held"),
+    ] {
+        let mut harness = harness("held");
+        harness.event(Event::Text("l".into()));
+        harness.key_press(Key::L);
+        harness.run();
+        assert_eq!(
+            harness.state().search.0,
+            "",
+            "the L that opened it is not typed"
+        );
+        if !typed.is_empty() {
+            harness.event(Event::Text(typed.into()));
+            harness.run();
+        }
+        for _ in 0..downs {
+            harness.key_press(Key::ArrowDown);
+            harness.run();
+        }
+        orders(&mut harness);
+        harness.key_press(Key::Enter);
+        harness.run();
+        assert_eq!(harness.state().scene, scene, "{typed:?} {downs}");
+        assert!(!harness.state().show_scenes);
+        assert!(
+            matches!(orders(&mut harness)[..], [Order::Open(..)]),
+            "and nothing else"
+        );
+    }
 }
 
 #[test]

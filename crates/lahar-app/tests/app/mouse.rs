@@ -47,6 +47,32 @@ fn the_left_button_attracts_and_the_right_repels_until_released() {
 }
 
 #[test]
+fn where_the_scene_says_so_the_left_button_pushes_and_the_right_pulls() {
+    let mut harness = harness("pushed");
+    for (button, push) in [
+        (PointerButton::Primary, 5.0),
+        (PointerButton::Secondary, -5.0),
+    ] {
+        let at = pos2(700.0, 400.0);
+        harness.hover_at(at);
+        press(&harness, at, button, true);
+        harness.run();
+        let orders_now = orders(&mut harness);
+        let Some(Order::Tell(Command::Pointer(Some(pointer)))) = orders_now.last() else {
+            panic!("{orders_now:?}");
+        };
+        let expected = PointerAction::Push {
+            acceleration: push,
+            power: 4.0,
+        };
+        assert_eq!((pointer.radius, pointer.action), (0.25, expected));
+        press(&harness, at, button, false);
+        harness.run();
+        orders(&mut harness);
+    }
+}
+
+#[test]
 fn in_3d_a_drag_orbits_and_the_hand_takes_hold_of_the_nearest_water() {
     let mut harness = harness("dam-break-3d");
     let at = pos2(700.0, 400.0);

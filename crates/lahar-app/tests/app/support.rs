@@ -22,6 +22,7 @@ impl SceneSource for Blocks {
             ("dam-break-3d", "Dam break in 3D", 3),
             ("broken", "Broken", 2),
             ("held", "Gravity while a key is held", 2),
+            ("pushed", "The mouse pushes", 2),
         ]
         .map(|(name, title, dimension)| SceneCard {
             name: name.into(),
@@ -65,7 +66,14 @@ impl SceneSource for Blocks {
             }],
             body_swatches: vec![0],
             angle: Angle::default(),
-            controls: if name == "held" {
+            controls: if name == "pushed" {
+                Controls {
+                    pull: Some(5.0),
+                    reach: Some(0.25),
+                    push: Some(4.0),
+                    ..Controls::default()
+                }
+            } else if name == "held" {
                 Controls {
                     speed: 0.5,
                     gravity: Some(30.0),
@@ -73,6 +81,7 @@ impl SceneSource for Blocks {
                     pull: Some(100.0),
                     reach: Some(f64::INFINITY),
                     softening: Some(0.01),
+                    push: None,
                 }
             } else {
                 Controls::default()

@@ -9,6 +9,7 @@
 
 mod beside;
 mod camera;
+mod drawn;
 mod film;
 mod palette;
 mod plane;
@@ -18,12 +19,13 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
+use drawn::Drawn;
 use lahar::{Field, Simulate, Snapshot};
 
 pub use beside::beside;
 pub use camera::Camera;
 pub use film::Film;
-pub use palette::{BACKGROUND, Colour, colour_map, model_colours};
+pub use palette::{BACKGROUND, Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, model_colours};
 
 /// The fields that a picture is drawn from; those that a snapshot lacks are done without.
 pub const FIELDS: &[Field] = &[
@@ -31,6 +33,8 @@ pub const FIELDS: &[Field] = &[
     Field::Velocity,
     Field::Pressure,
     Field::Volume0,
+    Field::Mass,
+    Field::Jacobian,
     Field::Material,
     Field::Body,
 ];
@@ -169,7 +173,8 @@ fn around(snapshot: &Snapshot, dx: f64) -> ([f64; 3], [f64; 3]) {
     (min, max)
 }
 
-/// What colours mean.
+/// What colours mean. Numbers are on fixed scales, the window's colours: [`SPEED_RAMP`], [`PRESSURE_RAMP`],
+/// [`REST_RAMP`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Colouring {
     /// The material, or the body's own colour; brighter where it is fast.
@@ -177,10 +182,14 @@ pub enum Colouring {
     Material,
     /// The body.
     Body,
-    /// Speed \[m/s\] from 0 to the given one, on a perceptually even scale.
+    /// Speed \[m/s\] from 0 to the given one.
     Speed(f64),
-    /// Pressure \[Pa\] from the first to the second, on a perceptually even scale.
+    /// Pressure \[Pa\] from the first to the second.
     Pressure(f64, f64),
+    /// Density \[kg/m³; kg/m² in 2D\] from the first to the second.
+    Density(f64, f64),
+    /// J from the first to the second.
+    Jacobian(f64, f64),
 }
 
 /// How pictures look.
@@ -270,113 +279,6 @@ impl Renderer {
     }
 }
 
-/// Particles as the painters take them.
-struct Drawn {
-    /// Where \[m\]; 0 beyond the dimension.
-    position: Vec<[f32; 3]>,
-    /// Edge of the cube (square) that one fills at rest \[m\].
-    size: Vec<f32>,
-    /// In linear light.
-    colour: Vec<[f32; 3]>,
-}
-
-impl Drawn {
-    fn from(snapshot: &Snapshot, scenery: &Scenery, colouring: Colouring) -> Self {
-        let d = snapshot.dimension;
-        let n = snapshot.count;
-        let numbers = |field: Field| snapshot.get(field).map(lahar::Data::to_f32);
-        let positions = snapshot
-            .get(Field::Position)
-            .map(lahar::Data::to_f64)
-            .unwrap_or_default();
-        let position = positions
-            .chunks_exact(d)
-            .map(|x| core::array::from_fn(|axis| if axis < d { x[axis] as f32 } else { 0.0 }))
-            .collect();
-        // No larger than a cell: volumes that only have a part in a mass can be anything.
-        let size = numbers(Field::Volume0).map_or_else(
-            || vec![0.5 * scenery.dx as f32; n],
-            |volumes| {
-                volumes
-                    .iter()
-                    .map(|v| if d == 2 { v.sqrt() } else { v.cbrt() })
-                    .map(|edge| edge.min(scenery.dx as f32))
-                    .collect()
-            },
-        );
-        let speed: Vec<f32> = numbers(Field::Velocity).map_or_else(
-            || vec![0.0; n],
-            |v| {
-                v.chunks_exact(d)
-                    .map(|v| v.iter().map(|c| c * c).sum::<f32>().sqrt())
-                    .collect()
-            },
-        );
-        let index = |field: Field| numbers(field).unwrap_or_else(|| vec![0.0; n]);
-        let shades = |colour| {
-            [
-                palette::linear(colour),
-                palette::linear(palette::bright(colour)),
-            ]
-        };
-        let colours: Vec<[[f32; 3]; 2]> = scenery.colours.iter().copied().map(shades).collect();
-        let own: Vec<Option<[[f32; 3]; 2]>> = scenery
-            .bodies
-            .iter()
-            .map(|colour| colour.map(shades))
-            .collect();
-        let of_body = |body: f32| own.get(body as usize).copied().flatten();
-        let of_index = |i: f32| colours[i as usize % colours.len().max(1)];
-        let colour = if colours.is_empty() {
-            vec![[1.0; 3]; n]
-        } else {
-            match colouring {
-                Colouring::Material => {
-                    let scale = if scenery.speed > 0.0 {
-                        1.0 / scenery.speed as f32
-                    } else {
-                        0.0
-                    };
-                    index(Field::Material)
-                        .iter()
-                        .zip(&speed)
-                        .zip(index(Field::Body))
-                        .map(|((&material, &speed), body)| {
-                            let [base, bright] =
-                                of_body(body).unwrap_or_else(|| of_index(material));
-                            let part = (speed * scale).clamp(0.0, 1.0);
-                            palette::mix(base, bright, part * part)
-                        })
-                        .collect()
-                }
-                Colouring::Body => index(Field::Body)
-                    .iter()
-                    .map(|&body| {
-                        let other = palette::BODIES[body as usize % palette::BODIES.len()];
-                        of_body(body).map_or_else(|| palette::linear(other), |[base, _]| base)
-                    })
-                    .collect(),
-                Colouring::Speed(largest) => on_scale(&speed, 0.0, largest as f32),
-                Colouring::Pressure(low, high) => {
-                    on_scale(&index(Field::Pressure), low as f32, high as f32)
-                }
-            }
-        };
-        Self {
-            position,
-            size,
-            colour,
-        }
-    }
-}
-
-fn on_scale(values: &[f32], low: f32, high: f32) -> Vec<[f32; 3]> {
-    values
-        .iter()
-        .map(|value| palette::linear(colour_map((value - low) / (high - low))))
-        .collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -425,6 +327,33 @@ mod tests {
                 count(&picture, |p| p == [250, 10, 20]) > 100,
                 "{colouring:?}"
             );
+        }
+    }
+
+    /// Three bodies, pressed, at rest and torn, in 2D and 3D: the scale's ends and its middle.
+    #[test]
+    fn density_and_the_jacobian_have_colours() {
+        for dimension in [2, 3] {
+            let middle = [0.5; 3];
+            let positions: Vec<f64> = [0.4, 1.0, 1.6]
+                .iter()
+                .flat_map(|&x| [x, middle[1], middle[2]].into_iter().take(dimension))
+                .collect();
+            let mut moment = snapshot(
+                dimension,
+                &positions,
+                0.1_f32.powi(dimension as i32),
+                &[0; 3],
+            );
+            let mass = 1000.0 * 0.1_f32.powi(dimension as i32);
+            moment.columns.push((Field::Mass, Data::F32(vec![mass; 3])));
+            let jacobian = Data::F32(vec![0.9, 1.0, 1.1]);
+            moment.columns.push((Field::Jacobian, jacobian));
+            let drawn = |colouring| Drawn::from(&moment, &scenery(dimension), colouring).colour;
+            let [below, rest, above] = REST_RAMP.map(palette::linear);
+            assert_eq!(drawn(Colouring::Jacobian(0.9, 1.1)), [below, rest, above]);
+            let density = drawn(Colouring::Density(950.0, 1050.0));
+            assert_eq!(density, [above, rest, below]);
         }
     }
 

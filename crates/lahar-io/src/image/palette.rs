@@ -71,27 +71,44 @@ pub(super) fn lighter(colour: Colour, part: f32) -> Colour {
     colour.map(|c| (f32::from(c) + (255.0 - f32::from(c)) * part) as u8)
 }
 
-/// Viridis at eight equal steps (van der Walt and Smith 2015): lightness grows evenly, tellable by the colour-blind.
-const VIRIDIS: [Colour; 9] = [
-    hex(0x44_0154),
-    hex(0x47_2D7B),
-    hex(0x3B_528B),
-    hex(0x2C_728E),
-    hex(0x21_918C),
-    hex(0x28_AE80),
-    hex(0x5E_C962),
-    hex(0xAD_DC30),
-    hex(0xFD_E725),
+/// From slow to fast.
+pub const SPEED_RAMP: [Colour; 5] = [
+    hex(0x0D_5C86),
+    hex(0x0D_979B),
+    hex(0x7F_D09C),
+    hex(0xF5_E38B),
+    hex(0xFF_FFFF),
 ];
 
-/// A perceptually even scale: dark violet at 0, yellow at 1; what is not a number is shown as 0.
-pub fn colour_map(value: f32) -> Colour {
-    let steps = (VIRIDIS.len() - 1) as f32;
-    let place = (value.clamp(0.0, 1.0) * steps).max(0.0);
-    let low = (place as usize).min(VIRIDIS.len() - 2);
+/// From low pressure to high.
+pub const PRESSURE_RAMP: [Colour; 5] = [
+    hex(0x3B_3A8C),
+    hex(0x8A_44A6),
+    hex(0xDB_4D6D),
+    hex(0xF9_964D),
+    hex(0xFC_F3A8),
+];
+
+/// Below rest, at rest, above it: of J and of density.
+pub const REST_RAMP: [Colour; 3] = [hex(0x3D_86E0), hex(0xE4_E8EA), hex(0xED_553B)];
+
+/// What is not a number: cannot be overlooked.
+const NOT_A_NUMBER: Colour = hex(0xFF_00FF);
+
+/// The colour at `at`, 0 to 1, of evenly spaced ones.
+pub fn along(ramp: &[Colour], at: f32) -> Colour {
+    let Some(last) = ramp.len().checked_sub(1) else {
+        return NOT_A_NUMBER;
+    };
+    if !at.is_finite() {
+        return NOT_A_NUMBER;
+    }
+    let place = at.clamp(0.0, 1.0) * last as f32;
+    let low = (place as usize).min(last.saturating_sub(1));
+    let (a, b) = (ramp[low], ramp[(low + 1).min(last)]);
     let part = place - low as f32;
     core::array::from_fn(|i| {
-        let (a, b) = (f32::from(VIRIDIS[low][i]), f32::from(VIRIDIS[low + 1][i]));
+        let (a, b) = (f32::from(a[i]), f32::from(b[i]));
         (a + (b - a) * part).round() as u8
     })
 }
@@ -162,10 +179,11 @@ mod tests {
     }
 
     #[test]
-    fn the_scale_ends_where_it_should() {
-        assert_eq!(colour_map(0.0), VIRIDIS[0]);
-        assert_eq!(colour_map(7.0), VIRIDIS[8]);
-        assert_eq!(colour_map(0.5), VIRIDIS[4]);
-        assert_eq!(colour_map(f32::NAN), VIRIDIS[0]);
+    fn a_ramp_begins_and_ends_with_its_ends() {
+        assert_eq!(along(&SPEED_RAMP, 0.0), SPEED_RAMP[0]);
+        assert_eq!(along(&SPEED_RAMP, 7.0), SPEED_RAMP[4]);
+        assert_eq!(along(&REST_RAMP, 0.5), REST_RAMP[1]);
+        assert_eq!(along(&REST_RAMP[..1], 0.5), REST_RAMP[0]);
+        assert_eq!(along(&PRESSURE_RAMP, f32::NAN), NOT_A_NUMBER);
     }
 }

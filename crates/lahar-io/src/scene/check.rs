@@ -52,7 +52,19 @@ pub(crate) fn model_of(material: &Table) -> Option<&str> {
     })
 }
 
-const NO_FORMULAS: &str = "it takes numbers only; gravity, velocity and forces take expressions";
+/// What to write instead of an expression where there must be numbers.
+fn no_formulas(kind: Kind, dimension: usize) -> &'static str {
+    match (kind, dimension) {
+        (Kind::Rotation | Kind::Matrix, 2) => {
+            "it takes numbers only; write such a motion as velocity: velocity = [\"-2*(y - 0.5)\", \"2*(x - 0.5)\"] turns about (0.5, 0.5)"
+        }
+        (Kind::Rotation | Kind::Matrix, _) => {
+            "it takes numbers only; write such a motion as velocity: velocity = [\"-2*(y - 0.5)\", \"2*(x - 0.5)\", \"0\"] turns about the \
+             axis along z through (0.5, 0.5)"
+        }
+        _ => "it takes numbers only; gravity, velocity and forces take expressions",
+    }
+}
 
 /// An expression of a scene; what is wrong with it is pointed at.
 pub(crate) fn read_formula(
@@ -208,6 +220,9 @@ impl Check<'_> {
                 {
                     error.hint("write it without quotes")
                 }
+                Value::Text(_) if matches!(kind, Kind::Rotation | Kind::Matrix) => {
+                    error.hint(no_formulas(kind, self.dimension))
+                }
                 _ => error,
             }
         };
@@ -321,7 +336,7 @@ impl Check<'_> {
                     (Kind::Formulas(_), Value::Text(_)) => {
                         error.hint("write an expression for each component, in brackets")
                     }
-                    (Kind::Vector, Value::Text(_)) => error.hint(NO_FORMULAS),
+                    (Kind::Vector, Value::Text(_)) => error.hint(no_formulas(kind, self.dimension)),
                     _ => error,
                 })
             }
@@ -375,7 +390,7 @@ impl Check<'_> {
                 }
                 (_, Some(_)) => {}
                 (Value::Text(_), _) => {
-                    return Err(bad(item.value.describe()).hint(NO_FORMULAS));
+                    return Err(bad(item.value.describe()).hint(no_formulas(kind, self.dimension)));
                 }
                 _ => return Err(bad(item.value.describe())),
             }

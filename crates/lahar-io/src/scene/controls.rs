@@ -18,6 +18,8 @@ pub struct Controls {
     pub reach: Option<f64>,
     /// The length within which its acceleration goes to zero \[m\]; `None`: a cell.
     pub softening: Option<f64>,
+    /// Particles are pushed instead of nodes attracted, by (distance/reach) to this power.
+    pub push: Option<f64>,
 }
 
 impl Default for Controls {
@@ -30,6 +32,7 @@ impl Default for Controls {
             pull: None,
             reach: None,
             softening: None,
+            push: None,
         }
     }
 }
@@ -49,6 +52,10 @@ pub(super) fn read_controls(scene: &Reader<'_>) -> Result<Controls, SceneError> 
             None => pointer.opt_number("radius"),
         },
         softening: pointer.opt_number("softening"),
+        push: match pointer.text("action")? {
+            "push" => Some(pointer.number("power")?),
+            _ => None,
+        },
     })
 }
 

@@ -1428,7 +1428,7 @@ pub(crate) static CONTROLS: Section = Section {
             Kind::Table(&HAND),
             "",
             Value("{}"),
-            "How the mouse attracts and repels.",
+            "What the mouse does to the material.",
         ),
     ]],
 };
@@ -1459,6 +1459,14 @@ pub(crate) static HAND: Section = Section {
     header: "pointer = { .. } in [controls]",
     keys: &[&[
         key(
+            "action",
+            Kind::Word(&["attract", "push"]),
+            "",
+            Value("\"attract\""),
+            "`\"attract\"`: the left button pulls nodes to the pointer, the right one away; `\"push\"`: the left button pushes particles \
+             away, the right one pulls them.",
+        ),
+        key(
             "strength",
             Kind::Number(Bound::Positive),
             "m/s²",
@@ -1477,7 +1485,14 @@ pub(crate) static HAND: Section = Section {
             Kind::Number(Bound::Positive),
             "m",
             Words("`dx`"),
-            "The acceleration is `strength` d/(d + `softening`) at the distance d.",
+            "With `\"attract\"`, the acceleration is `strength` d/(d + `softening`) at the distance d.",
+        ),
+        key(
+            "power",
+            Kind::Number(Bound::NotNegative),
+            "",
+            Value("0.0"),
+            "With `\"push\"`, the acceleration is `strength` (d/`radius`)^`power`, and none beyond `radius`.",
         ),
     ]],
 };

@@ -2,7 +2,7 @@
 
 pub(crate) mod contact;
 pub(crate) mod impulse;
-mod pointer;
+pub(crate) mod pointer;
 pub(crate) mod walls;
 
 pub use impulse::BoundaryImpulse;

@@ -2,6 +2,7 @@
 
 use super::scatter::{split_runs, stencil};
 use super::{LARGEST_TILE, Scheme, Stage, rows, with_scheme};
+use crate::boundary::pointer::Push;
 use crate::boundary::walls::Walls;
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::BSpline;
@@ -59,6 +60,7 @@ pub(crate) fn gather<T: Lanes, const D: usize>(
     group: &mut Group<T, D>,
     grid: &Grid<T, D>,
     walls: &Walls<D>,
+    push: Option<&Push<D>>,
     scheme: Scheme,
     isa: IsaToken,
     dt: f64,
@@ -71,6 +73,7 @@ pub(crate) fn gather<T: Lanes, const D: usize>(
         law: law.as_ref(),
         grid,
         walls,
+        push,
         scheme,
         isa,
         dt,
@@ -82,6 +85,7 @@ struct Task<'a, T: Lanes, const D: usize> {
     law: &'a dyn crate::material::Law<T, D>,
     grid: &'a Grid<T, D>,
     walls: &'a Walls<D>,
+    push: Option<&'a Push<D>>,
     scheme: Scheme,
     isa: IsaToken,
     dt: f64,
@@ -128,6 +132,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         let plane = self.grid.tile_plane();
         let keep = Keep {
             hold: self.hold(run),
+            push: self.push(run),
             cushion: self.cushion(run),
         };
         let mut bounds = Bounds::NONE;
@@ -152,6 +157,14 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
             bounds = bounds.and(found);
         }
         bounds
+    }
+
+    /// The hand as this block's particles see it.
+    fn push(&self, run: &Run<D>) -> Option<Push<D>> {
+        let push = self.push?;
+        let edge = block_edge(D) as f64;
+        let middle = |block| edge * (f64::from(block) + 0.5) + self.scheme.offset();
+        Some(push.seen_from(run.block.map(middle)))
     }
 
     /// The cushion as this block's particles see it.
@@ -188,10 +201,12 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
     }
 }
 
-/// What keeps a block's particles in; positions as stored, (lowest, highest) on each axis.
+/// What pushes a block's particles and keeps them in; positions as stored, (lowest, highest) on each axis.
 struct Keep<T, const D: usize> {
     /// Where they may be: `None` if no wall is near.
     hold: Option<[(T, T); D]>,
+    /// The hand.
+    push: Option<Push<D>>,
     /// Where they are slowed down to stay, and the speed that crosses a cell in the time it looks ahead.
     cushion: Option<([(T, T); D], T)>,
 }
@@ -307,6 +322,9 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
             }
         }
 
+        if let Some(push) = &keep.push {
+            new_v = push.act(new_v, new_u); // (12)
+        }
         if let Some((cushion, speed)) = &keep.cushion {
             let speed = zero.splat(*speed);
             for axis in 0..D {
