@@ -42,7 +42,7 @@ pub(crate) enum Command {
     Show(Show),
     /// Write a commented scene to start from
     New(New),
-    /// Plot what runs have measured over time: energies, momenta, volume, speed, time step
+    /// Plot what runs have measured over time: energies, momenta, volume, speed, time step, probes
     Plot(Plot),
     /// Print the JSON schema of scene files, for editors
     Schema,

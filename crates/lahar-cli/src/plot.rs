@@ -1,5 +1,6 @@
 //! `lahar plot`: what runs have measured, over time, as SVG.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -125,7 +126,65 @@ pub(crate) fn draw(runs: &[(String, PathBuf)], folder: &Path) -> Result<Vec<Path
             .map_err(|error| cannot(format!("cannot write {}: {error}", path.display())))?;
         files.push(path);
     }
+    for (probe, plot) in probe_plots(runs)? {
+        let Ok(svg) = plot.svg() else { continue };
+        let path = folder.join(format!("probe-{probe}.svg"));
+        fs::write(&path, svg)
+            .map_err(|error| cannot(format!("cannot write {}: {error}", path.display())))?;
+        files.push(path);
+    }
     Ok(files)
+}
+
+/// A plot for each probe, by name: a line for each of its numbers and each run that has it.
+fn probe_plots(runs: &[(String, PathBuf)]) -> Result<BTreeMap<String, Plot>, CliError> {
+    let mut plots = BTreeMap::<String, Plot>::new();
+    for (run, folder) in runs {
+        // Runs without probes have no such folder.
+        let Ok(entries) = fs::read_dir(folder.join("probes")) else {
+            continue;
+        };
+        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        paths.retain(|path| path.extension().is_some_and(|extension| extension == "csv"));
+        paths.sort();
+        for path in paths {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            let table = Table::read(&path)?;
+            let Some(time) = table.column("time") else {
+                continue;
+            };
+            for column in table.names().iter().filter(|column| *column != "time") {
+                let Some(values) = table.column(column) else {
+                    continue;
+                };
+                let plot = plots
+                    .entry(name.clone().into_owned())
+                    .or_insert_with(|| Plot {
+                        title: name.clone().into_owned(),
+                        x_label: "time [s]".to_owned(),
+                        y_label: format!("{column} {}", probe_unit(column)),
+                        lines: Vec::new(),
+                    });
+                plot.lines.push(Line {
+                    name: match runs.len() {
+                        1 => column.clone(),
+                        _ => format!("{run}, {column}"),
+                    },
+                    points: time.iter().copied().zip(values.iter().copied()).collect(),
+                });
+            }
+        }
+    }
+    Ok(plots)
+}
+
+/// Unit of a column of probes.
+fn probe_unit(column: &str) -> &'static str {
+    match column {
+        "pressure" => "[Pa]",
+        "height" | "front" => "[m]",
+        _ => "[N; N/m in 2D]",
+    }
 }
 
 impl Figure {

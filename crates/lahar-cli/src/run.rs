@@ -199,7 +199,8 @@ impl Going<'_> {
         let snapshot =
             (due && !self.fields.is_empty()).then(|| self.simulation.snapshot(&self.fields));
         let diagnostics = self.simulation.diagnostics();
-        let result = self.writer.frame(frame, snapshot, diagnostics);
+        let probes = self.simulation.take_probe_samples();
+        let result = self.writer.frame(frame, snapshot, diagnostics, probes);
         self.output_seconds += clock::seconds() - before;
         result
     }
@@ -323,6 +324,10 @@ fn report(
                 ),
             ),
             (true, folder.diagnostics().display().to_string()),
+            (
+                folder.probes().is_dir(),
+                format!("{}/", folder.probes().display()),
+            ),
             (true, folder.record().display().to_string()),
         ] {
             if there {

@@ -453,3 +453,36 @@ fn ctrl_c_ends_after_the_frame_with_130_and_whole_files() {
         lahar_io::npz::read(folder.join("frames").join(frame)).unwrap();
     }
 }
+
+#[test]
+fn probes_are_written_and_plotted_and_change_nothing() {
+    let here = here();
+    let probes = r#"probes=[{name="P1",rate=500.0,pressure={at=[0.0,0.0]}},{name="front",front={depth=0.05}}]"#;
+    code(
+        &run(
+            here.path(),
+            &["--frames=3", "-o", "with", "--format=none", "--set", probes],
+        ),
+        0,
+    );
+    code(
+        &run(
+            here.path(),
+            &["--frames=3", "-o", "without", "--format=none"],
+        ),
+        0,
+    );
+    let text = |name: &str| std::fs::read_to_string(here.path().join(name)).expect(name);
+    assert_eq!(
+        text("with/diagnostics.csv"),
+        text("without/diagnostics.csv")
+    );
+    let pressure = text("with/probes/P1.csv");
+    // 3 frames of 1/60 s at 500 readings a second, and the one at the start.
+    assert_eq!(pressure.lines().count(), 1 + 1 + 25, "{pressure}");
+    assert!(pressure.starts_with("time,pressure\n0.0,"));
+    assert_eq!(text("with/probes/front.csv").lines().count(), 1 + 4);
+    assert!(!here.path().join("without/probes").exists());
+    code(&lahar(here.path(), &["plot", "with"]), 0);
+    assert!(text("with/plots/probe-P1.svg").contains("pressure [Pa]"));
+}

@@ -370,7 +370,52 @@ const BROKEN: &[(&str, &str, &str)] = &[
     (
         "a table to come",
         "title = \"Column\"\n",
-        "title = \"Column\"\nprobes = []\n",
+        "title = \"Column\"\nemitters = []\n",
+    ),
+    (
+        "a probe without a name",
+        "title = \"Column\"\n",
+        "probes = [{ height = {} }]\n",
+    ),
+    (
+        "a probe whose name is a path",
+        "title = \"Column\"\n",
+        "probes = [{ name = \"../p\", height = {} }]\n",
+    ),
+    (
+        "a probe of nothing",
+        "title = \"Column\"\n",
+        "probes = [{ name = \"p\" }]\n",
+    ),
+    (
+        "a probe of two things",
+        "title = \"Column\"\n",
+        "probes = [{ name = \"p\", height = {}, front = { depth = 0.1 } }]\n",
+    ),
+    (
+        "two probes of one name",
+        "title = \"Column\"\n",
+        "probes = [{ name = \"p\", height = {} }, { name = \"P\", height = {} }]\n",
+    ),
+    (
+        "a pressure nowhere",
+        "title = \"Column\"\n",
+        "probes = [{ name = \"p\", pressure = { radius = 0.1 } }]\n",
+    ),
+    (
+        "a plate without a width",
+        "title = \"Column\"\n",
+        "probes = [{ name = \"p\", pressure = { at = [0.1, 0.1], normal = [1.0, 0.0] } }]\n",
+    ),
+    (
+        "a front along an axis that is not there",
+        "title = \"Column\"\n",
+        "probes = [{ name = \"p\", front = { along = \"z\", depth = 0.1 } }]\n",
+    ),
+    (
+        "a front upwards",
+        "title = \"Column\"\n",
+        "probes = [{ name = \"p\", front = { along = \"y\", depth = 0.1 } }]\n",
     ),
     ("10¹² particles", "dx = 0.05", "dx = 1.0e-6"),
     (

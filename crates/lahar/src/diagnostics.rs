@@ -120,7 +120,9 @@ pub(crate) fn measure<T: Instance<D>, const D: usize>(
 }
 
 /// Σ over nodes of min(1, rest volume at the node / dxᴰ) dxᴰ: the space that is filled.
-fn filled_volume<T: Instance<D>, const D: usize>(simulation: &mut Simulation<T, D>) -> f64 {
+pub(crate) fn filled_volume<T: Instance<D>, const D: usize>(
+    simulation: &mut Simulation<T, D>,
+) -> f64 {
     simulation.rest_volume_to_grid();
     let cell = simulation.setup.dx.powi(D as i32);
     simulation.grid.over_nodes(|volume| volume.min(cell))

@@ -13,6 +13,7 @@ pub mod material;
 pub mod math;
 mod parallel;
 pub mod particles;
+pub mod probe;
 pub mod reference;
 pub mod setup;
 pub mod simulation;
@@ -29,6 +30,7 @@ pub use forces::{AccelerationField, Force, Pull};
 pub use instance::Instance;
 pub use material::{Material, Model};
 pub use particles::{Data, Field, Snapshot};
+pub use probe::{Gauge, Plate, Probe, ProbeSample, ProbeSamples};
 pub use setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
 pub use simulation::{
     Advance, Command, Memory, PhaseTimes, Pointer, PointerAction, Simulate, Simulation,

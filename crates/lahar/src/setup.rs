@@ -3,6 +3,7 @@
 use crate::boundary::{Corners, Cushion, Domain};
 use crate::forces::Force;
 use crate::material::Material;
+use crate::probe::Probe;
 
 /// Everything but the particles. SI units; in 2D per metre of depth.
 #[derive(Clone, Debug)]
@@ -30,6 +31,8 @@ pub struct Setup<const D: usize> {
     pub time_step: TimeStep,
     /// The materials; particles name them by their index here.
     pub materials: Vec<Material>,
+    /// What is measured on the way.
+    pub probes: Vec<Probe<D>>,
     /// The instruction set to run on; [`Isa::detect`] is the widest this machine has.
     pub isa: Isa,
 }
@@ -50,6 +53,7 @@ impl<const D: usize> Setup<D> {
             force: ForceForm::default(),
             time_step: TimeStep::default(),
             materials,
+            probes: Vec::new(),
             isa: Isa::detect(),
         }
     }

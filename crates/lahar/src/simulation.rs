@@ -16,6 +16,7 @@ use crate::instance::Instance;
 use crate::material::{IsaToken, Law};
 use crate::math::Vector;
 use crate::particles::{Field, Snapshot};
+use crate::probe::{self, ProbeSamples, Readings};
 use crate::setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
 use crate::sort::{DRIFT_LIMIT, Escaped, Sorter, in_range};
 use crate::step::StepControl;
@@ -128,6 +129,9 @@ pub trait Simulate: Send {
     /// What each wall has taken from the material since the start, in the order of the sides. The
     /// difference of two moments over the time between is the mean force.
     fn boundary_impulses(&self) -> Vec<BoundaryImpulse>;
+    /// What probes have read since this was last asked, in the order of [`Setup::probes`]; the reading
+    /// at the start comes first.
+    fn take_probe_samples(&mut self) -> Vec<ProbeSamples>;
     /// Gives the simulation a clock that returns seconds, for [`Simulate::phase_times`].
     fn set_clock(&mut self, clock: fn() -> f64);
     /// Seconds by phase since the clock was given.
@@ -183,6 +187,8 @@ pub struct Simulation<T: Instance<D>, const D: usize> {
     /// Where each particle started \[m\], by id, if a force asks for it.
     starts: Option<Vec<[f64; D]>>,
     next_id: u32,
+    /// What each probe has read.
+    pub(crate) readings: Vec<Readings>,
     clock: Option<fn() -> f64>,
     times: PhaseTimes,
 }
@@ -257,11 +263,13 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                 .any(Force::acts_on_particles)
                 .then(Vec::new),
             next_id: 0,
+            readings: vec![Readings::default(); setup.probes.len()],
             clock: None,
             times: PhaseTimes::default(),
             setup,
         };
         simulation.take_in(batches)?;
+        simulation.read_probes(None);
         Ok(simulation)
     }
 
@@ -525,7 +533,9 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         for (total, taken) in self.taken.iter_mut().zip(&self.grid.taken) {
             total.add_scaled(taken, self.setup.dx, self.origin);
         }
+        let before = self.control.time();
         self.control.taken(dt, limit);
+        self.read_probes(Some(before));
         Ok(())
     }
 
@@ -737,6 +747,8 @@ fn check<const D: usize>(setup: &Setup<D>, laws: usize) -> Result<Walls<D>, Setu
     }
     forces::check(&setup.forces)?;
     let walls = Walls::of(setup)?;
+    let boundaries: Vec<&str> = walls.sides().map(|(name, _)| name).collect();
+    probe::check(setup, &boundaries)?;
     let shortest = crate::kernel::STENCIL as i64;
     for axis in 0..D {
         if walls.period[axis].is_some_and(|period| period < shortest) {
@@ -941,6 +953,10 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
             angular_impulse: self.taken[side].angular,
         };
         self.walls.sides().map(of_side).collect()
+    }
+
+    fn take_probe_samples(&mut self) -> Vec<ProbeSamples> {
+        self.take_samples()
     }
 
     fn set_clock(&mut self, clock: fn() -> f64) {

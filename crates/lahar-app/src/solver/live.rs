@@ -136,6 +136,8 @@ impl Live {
             for runner in &mut self.runners {
                 runner.readouts.substeps_per_frame = core::mem::take(&mut runner.frame_substeps);
                 runner.arrived = false;
+                // The window does not show readings of probes; kept, they would pile up.
+                drop(runner.simulation.take_probe_samples());
             }
         }
         Ok(done)

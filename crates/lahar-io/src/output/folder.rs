@@ -112,6 +112,11 @@ impl RunFolder {
         self.path.join("frames")
     }
 
+    /// `probes/` in it.
+    pub fn probes(&self) -> PathBuf {
+        self.path.join("probes")
+    }
+
     /// `images/` in it.
     pub fn images(&self) -> PathBuf {
         self.path.join("images")

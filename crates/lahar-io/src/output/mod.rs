@@ -3,6 +3,7 @@
 //! ```text
 //! DIR/run.json          what was run, and how it went            record
 //! DIR/diagnostics.csv   totals, a row a frame                     diagnostics
+//! DIR/probes/NAME.csv   what probes have read, a row a reading  probes
 //! DIR/frames/000000.npz particles                                 frames
 //! DIR/images/000000.png pictures, and DIR/video.gif               crate::image
 //! ```
@@ -12,6 +13,7 @@
 mod diagnostics;
 mod folder;
 mod frames;
+mod probes;
 mod record;
 mod recording;
 mod table;

@@ -4,8 +4,9 @@ use std::fs;
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::{Builder, JoinHandle};
 
-use lahar::{Diagnostics, Snapshot};
+use lahar::{Diagnostics, ProbeSamples, Snapshot};
 
+use super::probes::ProbeFiles;
 use super::{DiagnosticsFile, OutputError, RunFolder, frame_name, write_frame, write_whole};
 use crate::image::{self, Renderer};
 use crate::npz::Compression;
@@ -93,6 +94,7 @@ struct Job {
     index: u64,
     snapshot: Option<Snapshot>,
     diagnostics: Diagnostics,
+    probes: Vec<ProbeSamples>,
 }
 
 /// Takes frames and writes them, in order, in the background.
@@ -135,7 +137,8 @@ impl Writer {
         })
     }
 
-    /// Hands over a frame; waits if too many are under way. Without a snapshot it is a row of the csv only.
+    /// Hands over a frame; waits if too many are under way. Without a snapshot it is rows of csv files only; `probes`
+    /// are the readings since the frame before.
     ///
     /// # Errors
     /// What went wrong with an earlier frame.
@@ -144,11 +147,13 @@ impl Writer {
         index: u64,
         snapshot: Option<Snapshot>,
         diagnostics: Diagnostics,
+        probes: Vec<ProbeSamples>,
     ) -> Result<(), OutputError> {
         let job = Job {
             index,
             snapshot,
             diagnostics,
+            probes,
         };
         if self
             .jobs
@@ -192,6 +197,7 @@ impl Drop for Writer {
 struct Work {
     plan: Plan,
     diagnostics: DiagnosticsFile,
+    probes: ProbeFiles,
     film: Option<image::Film>,
     written: Written,
 }
@@ -203,6 +209,7 @@ impl Work {
                 .film
                 .as_ref()
                 .map(|film| image::Film::new(film.pace.rate)),
+            probes: ProbeFiles::new(&plan.folder.probes()),
             plan,
             diagnostics,
             written: Written::default(),
@@ -214,6 +221,7 @@ impl Work {
             self.files(job.index, snapshot)?;
         }
         self.diagnostics.push(&job.diagnostics)?;
+        self.probes.push(&job.probes)?;
         self.written.frames += 1;
         Ok(())
     }
@@ -260,7 +268,7 @@ impl Work {
 mod tests {
     use super::*;
     use crate::image::{BACKGROUND, Scenery, Style, model_colours};
-    use lahar::{Data, Field};
+    use lahar::{Data, Field, ProbeSample};
 
     fn plan(folder: RunFolder) -> Plan {
         let scenery = Scenery {
@@ -324,10 +332,26 @@ mod tests {
                         time: x,
                         ..Diagnostics::default()
                     },
+                    vec![ProbeSamples {
+                        name: "P1".into(),
+                        columns: vec!["pressure"],
+                        samples: vec![ProbeSample {
+                            time: x,
+                            values: vec![2.0 * x],
+                        }],
+                    }],
                 )
                 .unwrap();
         }
         let written = writer.finish().unwrap();
+        let read = super::super::Table::read(&folder.probes().join("P1.csv")).unwrap();
+        let twice = |values: &[f64]| values.iter().map(|x| 2.0 * x).collect::<Vec<_>>();
+        assert_eq!(
+            read.column("time").map(twice).as_deref(),
+            read.column("pressure")
+        );
+        assert_eq!(read.names(), ["time", "pressure"]);
+        assert_eq!(read.column("time").map(<[f64]>::len), Some(9));
         assert_eq!(
             written,
             Written {
@@ -358,7 +382,7 @@ mod tests {
         let error = (0..100)
             .find_map(|index| {
                 writer
-                    .frame(index, snapshot(0.5), Diagnostics::default())
+                    .frame(index, snapshot(0.5), Diagnostics::default(), Vec::new())
                     .err()
             })
             .expect("the folder is gone");

@@ -20,6 +20,7 @@ impl<const D: usize> Plan<D> {
             force: self.force,
             time_step: self.time_step,
             materials: self.materials.clone(),
+            probes: self.probes.clone(),
             isa,
         }
     }

@@ -232,6 +232,11 @@ pub(crate) const SECTIONS: &[&Section] = &[
     &CENTRAL,
     &VORTEX,
     &DRAG,
+    &PROBE,
+    &PRESSURE,
+    &HEIGHT,
+    &FRONT,
+    &FORCE_PROBE,
     &CAMERA,
     &CONTROLS,
     &GRAVITY_KEYS,
@@ -405,9 +410,15 @@ pub(crate) static SCENE: Section = Section {
             Words("none"),
             "What acts on everything besides gravity: one `[[forces]]` each.",
         ),
+        key(
+            "probes",
+            Kind::Tables(&PROBE),
+            "",
+            Words("none"),
+            "What is measured on the way: one `[[probes]]` each.",
+        ),
         later("emitters"),
         later("drains"),
-        later("probes"),
     ]],
 };
 
@@ -1347,6 +1358,143 @@ pub(crate) static DRAG: Section = Section {
             "Velocity of the medium: wind, a current.",
         ),
     ]],
+};
+
+pub(crate) static PROBE: Section = Section {
+    name: "probe",
+    header: "[[probes]]: exactly one besides name and rate",
+    keys: &[&[
+        key(
+            "name",
+            Kind::Text,
+            "",
+            Required,
+            "Name of its file, probes/NAME.csv: letters, digits, - and _.",
+        ),
+        key(
+            "rate",
+            Kind::Number(Bound::Positive),
+            "1/s",
+            Words("`frame_rate`"),
+            "How often it is read: at the end of the first substep at or after each moment.",
+        ),
+        key(
+            "pressure",
+            Kind::Table(&PRESSURE),
+            "",
+            Words("–"),
+            "Pressure at a point, or its mean over a plate.",
+        ),
+        key(
+            "height",
+            Kind::Table(&HEIGHT),
+            "",
+            Words("–"),
+            "Where the surface is.",
+        ),
+        key(
+            "front",
+            Kind::Table(&FRONT),
+            "",
+            Words("–"),
+            "How far the material has come along an axis.",
+        ),
+        key(
+            "force",
+            Kind::Table(&FORCE_PROBE),
+            "",
+            Words("–"),
+            "Mean force of the material on a wall between readings.",
+        ),
+    ]],
+};
+
+pub(crate) static PRESSURE: Section = Section {
+    name: "pressure",
+    header: "pressure = { .. } in [[probes]]",
+    keys: &[&[
+        key(
+            "at",
+            Kind::Vector,
+            "m",
+            Required,
+            "The point, on a wall or inside; the middle of the plate.",
+        ),
+        key(
+            "radius",
+            Kind::Number(Bound::Positive),
+            "m",
+            Words("1.5 `dx`"),
+            "How far away particles count.",
+        ),
+        key(
+            "normal",
+            Kind::Vector,
+            "",
+            Words("a point, no plate"),
+            "Direction across the plate, of any length.",
+        ),
+        key(
+            "width",
+            Kind::Number(Bound::Positive),
+            "m",
+            Words("a point, no plate"),
+            "Length of the plate in 2D, diameter of the disc in 3D.",
+        ),
+    ]],
+};
+
+const AXIS: Kind = Kind::Word(&["x", "y", "z"]);
+const UP: Key = key("up", AXIS, "", Value("\"y\""), "The axis that points up.");
+
+pub(crate) static HEIGHT: Section = Section {
+    name: "height",
+    header: "height = { .. } in [[probes]]",
+    keys: &[&[
+        key(
+            "at",
+            Kind::Vector,
+            "m",
+            Words("the mean over the domain: filled volume over area"),
+            "Any point of the column.",
+        ),
+        UP,
+    ]],
+};
+
+pub(crate) static FRONT: Section = Section {
+    name: "front",
+    header: "front = { .. } in [[probes]]",
+    keys: &[&[
+        key("along", AXIS, "", Value("\"x\""), "The axis it runs along."),
+        key(
+            "towards",
+            Kind::Word(&["high", "low"]),
+            "",
+            Value("\"high\""),
+            "Towards which end of it.",
+        ),
+        key(
+            "depth",
+            Kind::Number(Bound::Positive),
+            "m",
+            Required,
+            "The last column of one cell that is deeper counts.",
+        ),
+        UP,
+    ]],
+};
+
+pub(crate) static FORCE_PROBE: Section = Section {
+    name: "force on a wall",
+    header: "force = { .. } in [[probes]]",
+    keys: &[&[key(
+        "on",
+        Kind::Text,
+        "",
+        Required,
+        "A wall of the domain: `left`, `right`, `bottom`, `top`, `back` or `front`.",
+    )]],
 };
 
 pub(crate) static CAMERA: Section = Section {

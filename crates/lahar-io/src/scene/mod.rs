@@ -29,6 +29,7 @@ mod formula;
 mod keys;
 mod plan;
 mod preset;
+mod probes;
 mod read;
 mod reference;
 mod shapes;
@@ -497,6 +498,10 @@ fn scene<const D: usize>(
 ) -> Result<Scene, SceneError> {
     let reader = Reader::new(&document.sources, &document.root, Span::default());
     let (frame_rate, substeps_per_frame) = read_frames(&reader, plan.time_step)?;
+    let plan = Plan {
+        probes: probes::read_probes(&reader, plan.dx, frame_rate)?,
+        ..plan
+    };
     let material_colors = reader
         .tables("materials")
         .into_iter()

@@ -15,8 +15,8 @@ use lahar::material::{
     ViscousStress, lame,
 };
 use lahar::{
-    Contact, Corners, Cushion, Domain, Force, ForceForm, Kernel, Material, Model, Sides, TimeStep,
-    Transfer, WallStyle,
+    Contact, Corners, Cushion, Domain, Force, ForceForm, Kernel, Material, Model, Probe, Sides,
+    TimeStep, Transfer, WallStyle,
 };
 use std::path::Path;
 
@@ -38,6 +38,8 @@ pub(crate) struct Plan<const D: usize> {
     pub(crate) time_step: TimeStep,
     pub(crate) materials: Vec<Material>,
     pub(crate) bodies: Vec<Body<D>>,
+    /// What is measured on the way.
+    pub(crate) probes: Vec<Probe<D>>,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -220,6 +222,7 @@ impl<const D: usize> Plan<D> {
             time_step,
             materials,
             bodies,
+            probes: Vec::new(),
             warnings,
         };
         plan.settle_stiffness(&stiffness)?;

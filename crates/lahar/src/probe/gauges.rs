@@ -1,0 +1,357 @@
+//! What gauges read. In f64 and in the order of rows, so that bits do not depend on threads; only
+//! blocks that a gauge can see are looked at.
+
+use super::{Gauge, Plate};
+use crate::instance::Instance;
+use crate::kernel::{BSpline, Quadratic};
+use crate::simulation::Simulation;
+use crate::store::{Group, Layout, Run, block_edge};
+
+/// Cells that a particle may be out of its block between sorts.
+const DRIFT: f64 = 1.0;
+
+/// How little the slope of the fit (13) is held to zero: a ten-thousandth of a radius squared is nothing
+/// where there are particles all around, and keeps two of them from setting a slope.
+const SLOPE_RIDGE: f64 = 1e-4;
+
+/// Part of a cell that counts as inside the surface.
+const SURFACE: f64 = 0.5;
+
+/// Reads probe `index`.
+pub(super) fn measure<T: Instance<D>, const D: usize>(
+    simulation: &mut Simulation<T, D>,
+    index: usize,
+) -> Vec<f64> {
+    let gauge = simulation.setup.probes[index].gauge.clone();
+    vec![match gauge {
+        Gauge::Pressure { at, radius, plate } => {
+            let points = points(at, plate.as_ref(), radius);
+            let sum: f64 = points
+                .iter()
+                .map(|&x| pressure(simulation, x, radius))
+                .sum();
+            sum / points.len() as f64
+        }
+        Gauge::Height {
+            up,
+            column: Some(at),
+        } => column_height(simulation, up, at),
+        Gauge::Height { up, column: None } => mean_height(simulation, up),
+        Gauge::Front {
+            along,
+            rising,
+            up,
+            depth,
+        } => front(simulation, [along, up], rising, depth),
+        Gauge::Force { on } => return simulation.mean_force(index, &on),
+    }]
+}
+
+/// Where the pressure on a plate is read: half a radius apart at the most, each the middle of an
+/// equal part.
+fn points<const D: usize>(at: [f64; D], plate: Option<&Plate<D>>, radius: f64) -> Vec<[f64; D]> {
+    let Some(plate) = plate else {
+        return vec![at];
+    };
+    let count = (plate.width / (0.5 * radius)).ceil().max(1.0) as usize;
+    let place = |i: usize| plate.width * ((i as f64 + 0.5) / count as f64 - 0.5);
+    let across = tangents(plate.normal);
+    let mut points = Vec::new();
+    for i in 0..count {
+        for j in 0..if D == 3 { count } else { 1 } {
+            let along = [place(i), if D == 3 { place(j) } else { 0.0 }];
+            if D == 2 || along[0].hypot(along[1]) <= 0.5 * plate.width {
+                points.push(core::array::from_fn(|k| {
+                    at[k] + along[0] * across[0][k] + along[1] * across[1][k]
+                }));
+            }
+        }
+    }
+    points
+}
+
+/// Unit vectors across `normal`: one in 2D (the second is zero), two in 3D.
+fn tangents<const D: usize>(normal: [f64; D]) -> [[f64; D]; 2] {
+    let unit = |v: [f64; D]| {
+        let length = v.iter().map(|v| v * v).sum::<f64>().sqrt();
+        v.map(|v| v / length)
+    };
+    let n = unit(normal);
+    if D == 2 {
+        let turned = core::array::from_fn(|k| if k == 0 { -n[1] } else { n[0] });
+        return [turned, [0.0; D]];
+    }
+    // The axis that is farthest from the normal, less its part along it.
+    let least = (0..D).fold(0, |least, k| {
+        if n[k].abs() < n[least].abs() {
+            k
+        } else {
+            least
+        }
+    });
+    let first = unit(core::array::from_fn(|k| {
+        f64::from(u8::from(k == least)) - n[least] * n[k]
+    }));
+    let second = core::array::from_fn(|k| {
+        let (i, j) = ((k + 1) % D, (k + 2) % D);
+        n[i] * first[j] - n[j] * first[i]
+    });
+    [first, second]
+}
+
+impl<T: Instance<D>, const D: usize> Simulation<T, D> {
+    /// `x` \[m\] in cells from the origin.
+    fn to_cells(&self, x: [f64; D]) -> [f64; D] {
+        core::array::from_fn(|k| (x[k] - self.origin[k]) / self.setup.dx)
+    }
+
+    /// From `a` to `b` on an axis, in cells; the short way round where it is periodic.
+    fn offset_on(&self, axis: usize, a: f64, b: f64) -> f64 {
+        match self.walls.period[axis] {
+            Some(period) => (b - a) - period as f64 * ((b - a) / period as f64).round(),
+            None => b - a,
+        }
+    }
+
+    /// Calls `f` with every particle of blocks that may reach within `reach` cells of `x` on the
+    /// axes in `seen`: its group, row, and place in cells.
+    fn near(
+        &self,
+        x: [f64; D],
+        reach: f64,
+        seen: impl Fn(usize) -> bool,
+        mut f: impl FnMut(&Group<T, D>, usize, [f64; D]),
+    ) {
+        let edge = block_edge(D) as f64;
+        let offset = self.scheme.offset();
+        for group in &self.groups {
+            let may_see = |run: &&Run<D>| {
+                (0..D).filter(|&k| seen(k)).all(|k| {
+                    let middle = offset + edge * (f64::from(run.block[k]) + 0.5);
+                    self.offset_on(k, x[k], middle).abs() <= reach + DRIFT + 0.5 * edge
+                })
+            };
+            for run in group.runs.iter().filter(may_see) {
+                for row in run.rows() {
+                    f(group, row, group.cells(run.block, row, offset));
+                }
+            }
+        }
+    }
+
+    /// Weight of the particle at `b` for a node at `a`, its mirror images in the axis' walls included.
+    fn mirrored_weight(&self, axis: usize, a: f64, b: f64) -> f64 {
+        let planes = self.walls.planes.iter().filter(|plane| plane.axis == axis);
+        let images = planes.map(|plane| weight(2.0 * plane.node as f64 - b - a));
+        weight(self.offset_on(axis, a, b)) + images.sum::<f64>()
+    }
+}
+
+/// The quadratic kernel, whatever the run's is: the weight of a node for a particle `s` cells away.
+fn weight(s: f64) -> f64 {
+    let past = s - Quadratic::OFFSET;
+    let base = past.floor();
+    let weights = Quadratic::weights(past - base);
+    // The node is at 0, which is −base above the base node.
+    if (-2.0..=0.0).contains(&base) {
+        weights[-base as usize]
+    } else {
+        0.0
+    }
+}
+
+/// (13): the pressure at a point \[Pa\], from a plane fitted to the particles around it. A mean
+/// alone would be the pressure where the particles are: on a wall, half a radius inside.
+fn pressure<T: Instance<D>, const D: usize>(
+    simulation: &Simulation<T, D>,
+    at: [f64; D],
+    radius: f64,
+) -> f64 {
+    let x = simulation.to_cells(at);
+    let reach = radius / simulation.setup.dx;
+    // Normal equations of p(d) = c₀ + c·d: the matrix and the right side.
+    let mut sums = [[0.0; 4]; 4];
+    let mut right = [0.0; 4];
+    simulation.near(
+        x,
+        reach,
+        |_| true,
+        |group, row, place| {
+            let d: [f64; D] =
+                core::array::from_fn(|k| simulation.offset_on(k, x[k], place[k]) / reach);
+            let squared = d.iter().map(|d| d * d).sum::<f64>();
+            if squared >= 1.0 {
+                return;
+            }
+            let (volume, pressure) = volume_and_pressure(group, row);
+            let w = volume * (1.0 - squared) * (1.0 - squared);
+            let term = |i: usize| if i == 0 { 1.0 } else { d[i - 1] };
+            for i in 0..=D {
+                for j in 0..=D {
+                    sums[i][j] += w * term(i) * term(j); // (13)
+                }
+                right[i] += w * term(i) * pressure; // (13)
+            }
+        },
+    );
+    let total = sums[0][0];
+    if total == 0.0 {
+        return 0.0;
+    }
+    for (i, row) in sums.iter_mut().enumerate().take(D + 1).skip(1) {
+        row[i] += SLOPE_RIDGE * total;
+    }
+    first_unknown::<D>(sums, right)
+}
+
+/// J V⁰ \[m³\] and Cauchy pressure \[Pa\] of a particle.
+fn volume_and_pressure<T: Instance<D>, const D: usize>(
+    group: &Group<T, D>,
+    row: usize,
+) -> (f64, f64) {
+    let at = |column: usize| group.columns[column][row].to_f64();
+    let strain: Vec<f64> = (0..group.law.strain_columns())
+        .map(|column| at(Layout::strain(D) + column))
+        .collect();
+    let gradient =
+        core::array::from_fn(|i| core::array::from_fn(|j| at(Layout::affine(D) + j * D + i)));
+    let state = group.law.describe(&strain, gradient);
+    (
+        group.volume0.get(row).to_f64() * state.jacobian,
+        state.pressure,
+    )
+}
+
+/// The first of D + 1 unknowns of a symmetric positive system, by elimination from the last.
+fn first_unknown<const D: usize>(mut a: [[f64; 4]; 4], mut b: [f64; 4]) -> f64 {
+    for k in (1..=D).rev() {
+        for i in 0..k {
+            let factor = a[i][k] / a[k][k];
+            for j in 0..k {
+                a[i][j] -= factor * a[k][j];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    b[0] / a[0][0]
+}
+
+/// The surface in a column: the highest place where half of the space is filled, as the quadratic
+/// kernel sees it.
+fn column_height<T: Instance<D>, const D: usize>(
+    simulation: &Simulation<T, D>,
+    up: usize,
+    at: [f64; D],
+) -> f64 {
+    let x = simulation.to_cells(at);
+    let cell = simulation.setup.dx.powi(D as i32);
+    let mut column: Vec<(f64, f64)> = Vec::new();
+    simulation.near(
+        x,
+        1.5,
+        |axis| axis != up,
+        |group, row, place| {
+            let across = (0..D).filter(|&k| k != up);
+            let w: f64 = across
+                .map(|k| simulation.mirrored_weight(k, x[k], place[k]))
+                .product();
+            if w > 0.0 {
+                column.push((place[up], w * group.volume0.get(row).to_f64() / cell));
+            }
+        },
+    );
+    let lowest = column.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
+    let highest = column.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max);
+    let ground = if simulation.setup.domain.is_some() {
+        0.0
+    } else {
+        lowest
+    };
+    let world = |cells: f64| simulation.origin[up] + simulation.setup.dx * cells;
+    if column.is_empty() {
+        return world(ground.min(0.0));
+    }
+    let first = lowest.floor() - 1.0;
+    let nodes = (highest.ceil() + 1.0 - first) as usize + 1;
+    let mut filled = vec![0.0; nodes];
+    for &(place, part) in &column {
+        let base = ((place - first).floor() as usize).saturating_sub(1);
+        for (node, filled) in filled.iter_mut().enumerate().skip(base).take(4) {
+            *filled += part * simulation.mirrored_weight(up, first + node as f64, place);
+        }
+    }
+    // A wall cuts the column off: what is beyond its plane is only an image.
+    let inside = |node: usize| first + node as f64 >= ground;
+    let surface = (0..nodes - 1)
+        .rev()
+        .find(|&node| filled[node] >= SURFACE && inside(node));
+    match surface {
+        Some(node) => {
+            let past = (filled[node] - SURFACE) / (filled[node] - filled[node + 1]);
+            world(first + node as f64 + past)
+        }
+        None => world(ground + column.iter().map(|p| p.1).sum::<f64>()),
+    }
+}
+
+/// The filled volume over the domain's area \[m\], from its lower side.
+fn mean_height<T: Instance<D>, const D: usize>(
+    simulation: &mut Simulation<T, D>,
+    up: usize,
+) -> f64 {
+    simulation.sort_if_drifted();
+    let volume = crate::diagnostics::filled_volume(simulation);
+    simulation.origin[up] + volume / across(simulation, |axis| axis != up)
+}
+
+/// Product of the domain's sides on the axes in `seen` \[m^n\]; 1 for none.
+fn across<T: Instance<D>, const D: usize>(
+    simulation: &Simulation<T, D>,
+    seen: impl Fn(usize) -> bool,
+) -> f64 {
+    let side = |axis: usize| {
+        let domain = simulation.setup.domain.as_ref();
+        domain.map_or(1.0, |domain| domain.max[axis] - domain.min[axis])
+    };
+    (0..D).filter(|&axis| seen(axis)).map(side).product()
+}
+
+/// The end of the last column of one cell that is deeper than `depth` \[m\].
+fn front<T: Instance<D>, const D: usize>(
+    simulation: &Simulation<T, D>,
+    [along, up]: [usize; 2],
+    rising: bool,
+    depth: f64,
+) -> f64 {
+    let dx = simulation.setup.dx;
+    let mut columns = std::collections::BTreeMap::<i64, f64>::new();
+    for group in &simulation.groups {
+        for run in &group.runs {
+            for row in run.rows() {
+                let x = simulation.position(group, run.block, row)[along];
+                let cell = ((x - simulation.origin[along]) / dx).floor() as i64;
+                *columns.entry(cell).or_default() += group.volume0.get(row).to_f64();
+            }
+        }
+    }
+    let area = dx * across(simulation, |axis| axis != along && axis != up);
+    let deep = |(cell, volume): (&i64, &f64)| (volume / area > depth).then_some(*cell);
+    let last = if rising {
+        columns.iter().rev().find_map(deep)
+    } else {
+        columns.iter().find_map(deep)
+    };
+    let world = |cells: f64| simulation.origin[along] + dx * cells;
+    let Some(last) = last else {
+        let domain = simulation.setup.domain.as_ref();
+        return match (rising, domain) {
+            (false, Some(domain)) => domain.max[along],
+            _ => world(0.0),
+        };
+    };
+    let step = if rising { 1 } else { -1 };
+    let depth_of = |cell: i64| columns.get(&cell).map_or(0.0, |volume| volume / area);
+    let (here, beyond) = (depth_of(last), depth_of(last + step));
+    let past = (here - depth) / (here - beyond);
+    world(last as f64 + 0.5 + step as f64 * past)
+}

@@ -1,0 +1,240 @@
+//! Gauges in the scene: pressure at a place, the height of a surface, how far a front has come, the
+//! force on a boundary.
+//!
+//! ```text
+//! substep ─► is one due? ─► gauges.rs measures ─► kept ─► Simulate::take_probe_samples
+//! ```
+//! A probe looks and changes nothing: it is read at the end of the first substep at or after the
+//! moment it is due, and no substep is shortened for it. So a run has the same bits with and without.
+
+mod gauges;
+
+use crate::error::SetupError;
+use crate::instance::Instance;
+use crate::setup::Setup;
+use crate::simulation::{Simulate, Simulation};
+
+/// Something that is measured while the simulation runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Probe<const D: usize> {
+    /// Its name, for files.
+    pub name: String,
+    /// How often \[1/s\]; it is read at the start too.
+    pub rate: f64,
+    /// What it measures.
+    pub gauge: Gauge<D>,
+}
+
+/// What a probe measures. Only [`Gauge::Pressure`] looks at the material law.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Gauge<const D: usize> {
+    /// Cauchy pressure \[Pa\] by (13), 0 where there is no particle.
+    Pressure {
+        /// Where \[m\].
+        at: [f64; D],
+        /// How far it looks \[m\].
+        radius: f64,
+        /// The plate it is averaged over, with `at` in its middle; `None`: the point alone.
+        plate: Option<Plate<D>>,
+    },
+    /// Where on an axis the surface of the material is \[m\].
+    Height {
+        /// The axis that points up.
+        up: usize,
+        /// A point of the column; `None`: the mean over the domain, by the volume that is filled.
+        column: Option<[f64; D]>,
+    },
+    /// Where on an axis the last column of one cell is that holds material deeper than `depth`
+    /// \[m\], interpolated between the columns' middles; the domain's near end if none does.
+    Front {
+        /// The axis it runs along.
+        along: usize,
+        /// Whether it runs towards higher coordinates.
+        rising: bool,
+        /// The axis that points up.
+        up: usize,
+        /// The depth \[m\] that still counts.
+        depth: f64,
+    },
+    /// The mean force of the material on a boundary since the reading before \[N; N/m in 2D\], a
+    /// number an axis; 0 at the start.
+    Force {
+        /// Its name in [`Simulate::boundary_impulses`](crate::Simulate::boundary_impulses).
+        on: String,
+    },
+}
+
+/// The face of a gauge: a line across the normal in 2D, a disc in 3D.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plate<const D: usize> {
+    /// Across the face, of any length.
+    pub normal: [f64; D],
+    /// Length of the line, diameter of the disc \[m\].
+    pub width: f64,
+}
+
+impl<const D: usize> Gauge<D> {
+    /// What its numbers are called: "pressure", "height", "front"; "force_x", "force_y", "force_z".
+    pub fn columns(&self) -> Vec<&'static str> {
+        match self {
+            Self::Pressure { .. } => vec!["pressure"],
+            Self::Height { .. } => vec!["height"],
+            Self::Front { .. } => vec!["front"],
+            Self::Force { .. } => ["force_x", "force_y", "force_z"][..D].to_vec(),
+        }
+    }
+}
+
+/// A reading.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbeSample {
+    /// When \[s\].
+    pub time: f64,
+    /// The numbers of [`ProbeSamples::columns`].
+    pub values: Vec<f64>,
+}
+
+/// What a probe keeps between readings.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Readings {
+    /// Those that were not taken yet.
+    samples: Vec<ProbeSample>,
+    /// Time \[s\] of the last one, and the impulse \[N s\] that its boundary had taken till then.
+    last: (f64, [f64; 3]),
+}
+
+/// The readings of one probe.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ProbeSamples {
+    /// The probe's name.
+    pub name: String,
+    /// What the numbers are.
+    pub columns: Vec<&'static str>,
+    /// In the order of time.
+    pub samples: Vec<ProbeSample>,
+}
+
+/// How far, in its own intervals, a moment may be missed by rounding.
+const MOMENT_TOLERANCE: f64 = 1e-9;
+
+/// Number of the last moment at which a probe was due at `time`, from 0 at the start.
+fn moments(rate: f64, time: f64) -> f64 {
+    (time * rate + MOMENT_TOLERANCE).floor()
+}
+
+/// Whether the probes of a setup can be read; `boundaries` are the names of those that take forces.
+///
+/// # Errors
+/// Names the key of a probe that cannot.
+pub(crate) fn check<const D: usize>(
+    setup: &Setup<D>,
+    boundaries: &[&str],
+) -> Result<(), SetupError> {
+    for probe in &setup.probes {
+        let wrong = |key: &str, message: &str| {
+            Err(SetupError {
+                key: format!("probes.{}.{key}", probe.name),
+                message: message.into(),
+            })
+        };
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        let finite = |x: &[f64; D]| x.iter().all(|x| x.is_finite());
+        if !positive(probe.rate) {
+            return wrong("rate", "must be a positive number");
+        }
+        match &probe.gauge {
+            Gauge::Pressure { at, radius, plate } => {
+                if !finite(at) || !positive(*radius) {
+                    return wrong("pressure", "needs a place and a radius above 0");
+                }
+                if let Some(plate) = plate
+                    && !(positive(plate.width)
+                        && positive(plate.normal.iter().map(|n| n * n).sum()))
+                {
+                    return wrong("pressure", "needs a normal and a width above 0");
+                }
+            }
+            Gauge::Height { up, column } => {
+                if *up >= D || column.is_some_and(|x| !finite(&x)) {
+                    return wrong("height", "needs an axis and a place");
+                }
+                if column.is_none() && setup.domain.is_none() {
+                    return wrong(
+                        "height",
+                        "the mean height of a scene without a domain is unknown; give it a place",
+                    );
+                }
+            }
+            Gauge::Front {
+                along, up, depth, ..
+            } => {
+                if *along >= D || *up >= D || along == up {
+                    return wrong("front", "needs one axis along and another up");
+                }
+                if !positive(*depth) {
+                    return wrong("front", "needs a depth above 0");
+                }
+                if D == 3 && setup.domain.is_none() {
+                    return wrong("front", "depth across a scene without a domain is unknown");
+                }
+            }
+            Gauge::Force { on } => {
+                if !boundaries.contains(&on.as_str()) {
+                    return wrong(
+                        "force",
+                        &format!(
+                            "there is no boundary \"{on}\" that takes forces; there are: {}",
+                            boundaries.join(", ")
+                        ),
+                    );
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+impl<T: Instance<D>, const D: usize> Simulation<T, D> {
+    /// Reads the probes that became due since `before` \[s\]; at the start, with `None`, all.
+    pub(crate) fn read_probes(&mut self, before: Option<f64>) {
+        let now = self.control.time();
+        for index in 0..self.setup.probes.len() {
+            let rate = self.setup.probes[index].rate;
+            if before.is_some_and(|before| moments(rate, now) <= moments(rate, before)) {
+                continue;
+            }
+            let values = gauges::measure(self, index);
+            self.readings[index]
+                .samples
+                .push(ProbeSample { time: now, values });
+        }
+    }
+
+    /// ΔI/Δt since the last reading of probe `index`.
+    fn mean_force(&mut self, index: usize, on: &str) -> Vec<f64> {
+        let boundaries = self.boundary_impulses();
+        let boundary = boundaries.iter().find(|boundary| boundary.name == on);
+        let impulse = boundary.map_or([0.0; 3], |boundary| boundary.impulse);
+        let now = self.control.time();
+        let (then, before) = core::mem::replace(&mut self.readings[index].last, (now, impulse));
+        let mean = |axis: usize| match now - then {
+            0.0 => 0.0,
+            between => (impulse[axis] - before[axis]) / between,
+        };
+        (0..D).map(mean).collect()
+    }
+
+    /// Hands over what has been read, probe by probe.
+    pub(crate) fn take_samples(&mut self) -> Vec<ProbeSamples> {
+        let taken = self.readings.iter_mut();
+        let taken = taken.map(|readings| core::mem::take(&mut readings.samples));
+        let taken = self.setup.probes.iter().zip(taken);
+        taken
+            .map(|(probe, samples)| ProbeSamples {
+                name: probe.name.clone(),
+                columns: probe.gauge.columns(),
+                samples,
+            })
+            .collect()
+    }
+}
