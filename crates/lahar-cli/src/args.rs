@@ -24,6 +24,7 @@ impl Args {
             Some(Command::Run(run)) => run.json,
             Some(Command::List(list)) => list.json,
             Some(Command::Show(show)) => show.json,
+            Some(Command::Validate(validate)) => validate.json,
             _ => false,
         }
     }
@@ -44,6 +45,8 @@ pub(crate) enum Command {
     New(New),
     /// Plot what runs have measured over time: energies, momenta, volume, speed, time step, probes
     Plot(Plot),
+    /// Run physics cases and compare with exact solutions, experiments and other programs
+    Validate(Validate),
     /// Print the JSON schema of scene files, for editors
     Schema,
     /// Print completions for a shell
@@ -182,6 +185,43 @@ pub(crate) struct Plot {
     /// The folder to write; plots/ in the run's folder if not given, and there is one run
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
+}
+
+/// Options of `validate`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Validate {
+    /// Cases by name (K1, F5, D1, ..) or by their scene; a file is run in place of the built-in scene of its name.
+    /// All but the long ones if none is given
+    #[arg(value_name = "CASE|SCENE")]
+    pub(crate) cases: Vec<String>,
+
+    /// The coarser resolutions only: all in under two minutes
+    #[arg(long)]
+    pub(crate) quick: bool,
+
+    /// The cases that take long, too
+    #[arg(long)]
+    pub(crate) long: bool,
+
+    /// Set a key of the cases' scenes, as in `--set transfer=flip`; the cases' own settings come first
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
+
+    /// The folder for validation.md and its plots; out/validate if not given
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// The instruction set to compute with; the widest of this machine if not given
+    #[arg(long, value_name = "SET", value_parser = isa)]
+    pub(crate) isa: Option<Isa>,
+
+    /// Threads to compute with; all of this machine if not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+
+    /// Print the findings as one JSON document on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// Options of `completions`.

@@ -20,6 +20,7 @@ mod run;
 mod schema;
 mod show;
 mod terminal;
+mod validate;
 mod window;
 
 use std::process::ExitCode;
@@ -63,6 +64,7 @@ fn execute(args: Args) -> Result<ExitCode, CliError> {
         Some(Command::Show(show)) => show::show(&show),
         Some(Command::New(args)) => new::new(&args.file),
         Some(Command::Plot(plot)) => plot::plot(&plot),
+        Some(Command::Validate(args)) => validate::validate(&args),
         Some(Command::Schema) => schema::schema(),
         Some(Command::Completions(completions)) => completions::completions(completions.shell),
     }

@@ -486,3 +486,41 @@ fn probes_are_written_and_plotted_and_change_nothing() {
     code(&lahar(here.path(), &["plot", "with"]), 0);
     assert!(text("with/plots/probe-P1.svg").contains("pressure [Pa]"));
 }
+
+#[test]
+fn validate_prints_a_table_or_json_and_leaves_a_report() {
+    let here = here();
+    let output = lahar(
+        here.path(),
+        &["validate", "k1", "E1", "--quick", "--json", "-o", "v"],
+    );
+    code(&output, 0);
+    let findings = json(&output);
+    let periods: Vec<&Value> = (findings.as_array().expect("a list").iter())
+        .filter(|finding| finding["case"] == "E1")
+        .collect();
+    assert_eq!(periods.len(), 1, "{findings}");
+    assert_eq!(periods[0]["reference"], 10.0);
+    assert_eq!(periods[0]["pass"], true);
+    let report = std::fs::read_to_string(here.path().join("v/validation.md")).expect("a report");
+    assert!(report.contains("## E1: ") && report.contains("images/validation/e1-speed.svg"));
+    assert!(
+        here.path()
+            .join("v/images/validation/e1-speed.svg")
+            .exists()
+    );
+    // A bar that is far too soft misses: exit code 1.
+    let soft = [
+        "validate",
+        "E1",
+        "--quick",
+        "--set",
+        "materials.bar.youngs_modulus=50.0",
+    ];
+    let output = lahar(here.path(), &soft);
+    code(&output, 1);
+    assert!(String::from_utf8_lossy(&output.stdout).contains("MISS"));
+    let output = lahar(here.path(), &["validate", "Z1"]);
+    code(&output, 2);
+    assert!(errors(&output).contains("there is no case \"Z1\""));
+}

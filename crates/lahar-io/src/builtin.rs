@@ -18,14 +18,14 @@ pub struct Builtin {
 }
 
 macro_rules! scenes {
-    ($($name:literal $(in $folder:literal)? $dimension:literal $title:literal $summary:literal $(with $file:literal)?;)*) => {
+    ($($name:literal $(in $folder:literal)? $dimension:literal $title:literal $summary:literal $(with $file:literal at $path:literal)?;)*) => {
         &[$(Builtin {
             name: $name,
             title: $title,
             summary: $summary,
             dimension: $dimension,
             text: include_str!(concat!("../scenes/", $($folder, "/",)? $name, ".toml")),
-            files: &[$(($file, include_str!(concat!("../scenes/", $file))))?],
+            files: &[$(($file, include_str!(concat!("../scenes/", $path))))?],
         }),*]
     };
 }
@@ -50,7 +50,7 @@ const SCENES: &[Builtin] = scenes! {
     "planet" 2 "Planet and moon of water" "A moon of water falls on a planet of water, held together by a pull towards the middle.";
     "galaxy" 2 "Galaxy of dust" "A two-coloured disc of dust winds itself into spirals.";
     "taylor-green" 2 "Taylor-Green whirls" "Whirls in a periodic square stir two dyes.";
-    "knot-3d" 3 "Knot of jelly in 3D" "A knot of jelly, made from a mesh, falls and bounces." with "knot-3d.obj";
+    "knot-3d" 3 "Knot of jelly in 3D" "A knot of jelly, made from a mesh, falls and bounces." with "knot-3d.obj" at "knot-3d.obj";
     "drops-3d" 3 "Two drops in 3D" "Two drops of water meet off centre, without gravity.";
     "whirlpool-3d" 3 "Whirlpool in 3D" "A stirred basin: the surface sinks in the middle and rises at the walls.";
     "mpm88" in "lineage" 2 "mpm88" "The fluid square of Taichi's mpm88.py, with its constants, walls and time step.";
@@ -74,17 +74,28 @@ const SCENES: &[Builtin] = scenes! {
 };
 
 /// Scenes with published numbers to compare with; not listed, but found by name.
-const VALIDATION: &[Builtin] = &[Builtin {
-    name: "k7-mpm88-regression",
-    title: "mpm88, the regression of the Taichi project",
-    summary: "64 x 64 particles of mpm88's fluid on given places; moments of their positions are known at substep 500.",
-    dimension: 2,
-    text: include_str!("../scenes/validation/k7-mpm88-regression.toml"),
-    files: &[(
-        "k7-mpm88-regression.csv",
-        include_str!("../scenes/validation/k7-mpm88-regression.csv"),
-    )],
-}];
+const VALIDATION: &[Builtin] = scenes! {
+    "k2-affine-dust" in "validation" 2 "Dust in affine motion" "Dust turns, stretches and shears.";
+    "k3-discs" in "validation" 2 "Two discs meet, APIC" "The discs of e4-discs with APIC.";
+    "k7-mpm88-regression" in "validation" 2 "mpm88, the regression of the Taichi project" "64 x 64 particles of mpm88's fluid on given places; moments of their positions are known at substep 500." with "k7-mpm88-regression.csv" at "validation/k7-mpm88-regression.csv";
+    "k8-free-fall" in "validation" 2 "Free fall" "A ball of jelly falls.";
+    "e1-bar" in "validation" 2 "Bar that swings along itself" "A bar, fixed at one end, in its first mode.";
+    "e2-plate" in "validation" 2 "Plate that swings, clamped at one end" "A plate in its first bending mode.";
+    "e3-cantilever" in "validation" 2 "Soft cantilever let go under its weight" "A thick soft beam bends far down and comes up again.";
+    "e3-elastica" in "validation" 2 "Slender cantilever at rest under its weight" "A slender beam bends until it rests.";
+    "e4-discs" in "validation" 2 "Two discs meet" "Two elastic discs bounce off each other.";
+    "f1-taylor-green" in "validation" 2 "Taylor-Green whirls at Re = 100" "A square of whirls decays.";
+    "f2-shear-wave" in "validation" 2 "Shear wave without viscosity" "A shear wave that should stay.";
+    "f3-poiseuille" in "validation" 2 "Poiseuille flow starts" "A force starts the flow between two plates.";
+    "f5-standing-wave" in "validation" 2 "Standing wave" "A standing gravity wave in a tank.";
+    "f6-acoustic-mode" in "validation" 2 "Acoustic mode of a closed box" "Sound between two walls.";
+    "f7-elliptic-drop" in "validation" 2 "Elliptic drop" "A drop drawn out by its own motion.";
+    "f8-rotating-square" in "validation" 2 "Square patch of fluid that turns" "A square of fluid begins to turn.";
+    "f9-jet" in "validation" 2 "Jet on a wall" "A plane jet meets a wall.";
+    "d1-martin-moyce" in "validation" 2 "Dam break of Martin and Moyce" "A column of water collapses.";
+    "d2-koshizuka-oka" in "validation" 2 "Dam break of Koshizuka and Oka" "A column of water collapses in a short tank.";
+    "d3-wall-impact" in "validation" 2 "Dam break that runs into a wall" "A dam break hits the end wall, where gauges are.";
+};
 
 /// A commented scene to start an own one from.
 pub fn starter() -> &'static str {

@@ -13,3 +13,4 @@ mod ply;
 pub mod sampling;
 pub mod scene;
 pub mod shape;
+pub mod validate;

@@ -1,0 +1,142 @@
+//! Numbers from series: periods, decay, distances from tables.
+
+use super::session::Series;
+
+/// A table of reference numbers: its columns, in order. Lines that start with # tell its source, the
+/// first of the others names the columns.
+pub(super) fn table(text: &str) -> Vec<Vec<f64>> {
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let columns = lines.next().map_or(0, |names| names.split(',').count());
+    let mut table = vec![Vec::new(); columns];
+    for line in lines {
+        for (column, word) in table.iter_mut().zip(line.split(',')) {
+            column.push(word.trim().parse().unwrap_or(f64::NAN));
+        }
+    }
+    table
+}
+
+/// Two columns of a table as points.
+pub(super) fn points(text: &str) -> Series {
+    let table = table(text);
+    match &table[..] {
+        [x, y, ..] => x.iter().copied().zip(y.iter().copied()).collect(),
+        _ => Series::new(),
+    }
+}
+
+/// Moments at which a series passes zero, interpolated.
+pub(super) fn zero_crossings(series: &[(f64, f64)]) -> Vec<f64> {
+    let pairs = series.windows(2);
+    pairs
+        .filter(|pair| pair[0].1 != 0.0 && pair[0].1 * pair[1].1 <= 0.0)
+        .map(|pair| {
+            let [(t0, a), (t1, b)] = [pair[0], pair[1]];
+            t0 + (t1 - t0) * a / (a - b)
+        })
+        .collect()
+}
+
+/// Slope and intercept of the line with the least squares through the points.
+pub(super) fn line(points: &[(f64, f64)]) -> (f64, f64) {
+    let n = points.len() as f64;
+    let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / n;
+    let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
+    let slope = mean(&|p| (p.0 - x) * (p.1 - y)) / mean(&|p| (p.0 - x).powi(2));
+    (slope, y - slope * x)
+}
+
+/// Period of an oscillation about zero: twice the slope of its zero crossings.
+pub(super) fn period(series: &[(f64, f64)]) -> f64 {
+    let crossings = zero_crossings(series);
+    let numbered: Vec<(f64, f64)> = crossings
+        .iter()
+        .enumerate()
+        .map(|(number, time)| (number as f64, *time))
+        .collect();
+    2.0 * line(&numbered).0
+}
+
+/// The value of a series at `x`, interpolated; that of the nearest end outside.
+pub(super) fn at(series: &[(f64, f64)], x: f64) -> f64 {
+    let after = series.partition_point(|point| point.0 < x);
+    match (after.checked_sub(1).map(|i| series[i]), series.get(after)) {
+        (Some((x0, y0)), Some(&(x1, y1))) => y0 + (y1 - y0) * (x - x0) / (x1 - x0),
+        (Some((_, y)), None) => y,
+        (None, Some(&(_, y))) => y,
+        (None, None) => f64::NAN,
+    }
+}
+
+/// Mean of a series over `from .. to`, by trapezoids.
+pub(super) fn mean(series: &[(f64, f64)], from: f64, to: f64) -> f64 {
+    let inside = series.iter().copied().filter(|p| p.0 > from && p.0 < to);
+    let ends = |x: f64| core::iter::once((x, at(series, x)));
+    let points: Series = ends(from).chain(inside).chain(ends(to)).collect();
+    let area: f64 = points
+        .windows(2)
+        .map(|p| 0.5 * (p[0].1 + p[1].1) * (p[1].0 - p[0].0))
+        .sum();
+    area / (to - from)
+}
+
+/// The shift s in `range` with which `ours`, read at x + s, comes nearest to the `reference`, and the root mean
+/// square of what is left.
+pub(super) fn shifted(ours: &[(f64, f64)], reference: &[(f64, f64)], range: f64) -> (f64, f64) {
+    const STEPS: i32 = 600;
+    let left = |shift: f64| root_mean_square(ours, reference, shift);
+    (-STEPS..=STEPS)
+        .map(|step| range * f64::from(step) / f64::from(STEPS))
+        .map(|shift| (shift, left(shift)))
+        .fold((0.0, f64::INFINITY), |best, this| {
+            if this.1 < best.1 { this } else { best }
+        })
+}
+
+/// Root mean square of the distance of `ours`, read at x + `shift`, from the points of the `reference`.
+pub(super) fn root_mean_square(ours: &[(f64, f64)], reference: &[(f64, f64)], shift: f64) -> f64 {
+    let squares = reference
+        .iter()
+        .map(|(x, y)| (at(ours, x + shift) - y).powi(2));
+    (squares.sum::<f64>() / reference.len() as f64).sqrt()
+}
+
+/// Order of convergence from two errors at resolutions a factor apart.
+pub(super) fn order(coarse: f64, fine: f64, factor: f64) -> f64 {
+    (coarse / fine).abs().ln() / factor.ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wave(period: f64) -> Series {
+        (0..=500)
+            .map(|i| 0.01 * f64::from(i))
+            .map(|t| (t, (core::f64::consts::TAU * (t - 0.1) / period).sin()))
+            .collect()
+    }
+
+    #[test]
+    fn periods_and_means() {
+        assert!((period(&wave(0.7)) - 0.7).abs() < 1e-4);
+        assert!(mean(&wave(1.0), 0.5, 3.5).abs() < 1e-4);
+        assert_eq!(mean(&[(0.0, 1.0), (2.0, 3.0)], 0.5, 1.5), 2.0);
+        assert_eq!(at(&[(0.0, 1.0), (2.0, 3.0)], 5.0), 3.0);
+    }
+
+    #[test]
+    fn a_shift_is_found() {
+        let late: Series = wave(2.0).iter().map(|(t, y)| (t + 0.15, *y)).collect();
+        let some: Series = wave(2.0).into_iter().skip(50).step_by(40).take(9).collect();
+        let (shift, left) = shifted(&late, &some, 0.3);
+        assert!((shift - 0.15).abs() < 1e-3 && left < 1e-3, "{shift} {left}");
+    }
+
+    #[test]
+    fn tables_have_sources_names_and_numbers() {
+        let text = "# source\na,b\n1,2\n3,4\n";
+        assert_eq!(table(text), [[1.0, 3.0], [2.0, 4.0]]);
+        assert_eq!(points(text), [(1.0, 2.0), (3.0, 4.0)]);
+    }
+}

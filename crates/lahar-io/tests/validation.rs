@@ -1,0 +1,88 @@
+//! The physics cases that take seconds, held to their targets: what misses is listed in docs/known-misses.md, and what
+//! is listed there misses.
+
+use std::collections::BTreeSet;
+
+use lahar::Isa;
+use lahar_io::validate::{self, Options};
+
+/// Cases that take seconds at their coarser resolution; the others wait for `lahar validate`.
+const FAST: [&str; 14] = [
+    "K1", "K2", "K3", "K4", "K6", "K7", "K8", "E1", "E4", "F3", "F6", "F7", "F8", "D1",
+];
+
+/// The rows of the list that are found by `lahar validate`: (case, quantity).
+fn known_misses() -> BTreeSet<(String, String)> {
+    let text = include_str!("../../../docs/known-misses.md");
+    let (_, list) = text
+        .split_once("## By `lahar validate`")
+        .expect("the list has its heading");
+    let rows = list.lines().filter_map(|line| line.strip_prefix("| "));
+    rows.skip(1)
+        .map(|row| {
+            let mut cells = row.split(" | ");
+            let mut cell = || cells.next().unwrap_or_default().trim().to_owned();
+            (cell(), cell())
+        })
+        .collect()
+}
+
+#[test]
+fn fast_cases_meet_their_targets_or_are_known_to_miss() {
+    let options = Options {
+        quick: true,
+        isa: Isa::Portable,
+        set: Vec::new(),
+        scene_file: None,
+    };
+    let known = known_misses();
+    let mut wrong = Vec::new();
+    for id in FAST {
+        let [case] = validate::find(id)[..] else {
+            panic!("{id} is one case");
+        };
+        let outcome =
+            validate::run(case, &options, &|_| {}).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(outcome.failure, None, "{id}");
+        assert!(
+            outcome
+                .findings
+                .iter()
+                .any(|finding| finding.target.is_some())
+                || id == "D1",
+            "{id}"
+        );
+        for finding in &outcome.findings {
+            let listed = known.contains(&(id.to_owned(), finding.quantity.clone()));
+            if finding.pass() == listed {
+                wrong.push(format!("{finding:?} is listed as a miss: {listed}"));
+            }
+        }
+    }
+    assert_eq!(wrong, [] as [String; 0]);
+}
+
+/// What is listed is a quantity of a case: none has been renamed.
+#[test]
+fn the_list_names_cases() {
+    let known = known_misses();
+    for (case, _) in &known {
+        assert_eq!(validate::find(case).len(), 1, "{case}");
+    }
+}
+
+/// A case is found by its name in any letters, all that run a scene by the scene, or a file of its name.
+#[test]
+fn cases_are_found() {
+    let found =
+        |name: &str| -> Vec<&str> { validate::find(name).iter().map(|case| case.id).collect() };
+    for (name, ids) in [
+        ("d1", &["D1"][..]),
+        ("f5-standing-wave", &["F5"]),
+        ("my/d3-wall-impact.toml", &["D3", "D4", "D5"]),
+        ("D9", &[]),
+        ("", &[]),
+    ] {
+        assert_eq!(found(name), ids, "{name}");
+    }
+}
