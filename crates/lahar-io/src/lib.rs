@@ -2,6 +2,7 @@
 
 pub mod builtin;
 pub mod error;
+mod even;
 mod expression;
 pub mod image;
 mod mesh_file;

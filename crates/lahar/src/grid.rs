@@ -18,6 +18,7 @@
 //! a second plane of quads.
 
 mod columns;
+mod filling;
 
 use crate::boundary::impulse::Taken;
 use crate::boundary::walls::Walls;
@@ -30,6 +31,7 @@ use crate::setup::Transfer;
 use crate::store::{Group, block_edge};
 use crate::transfer::Scheme;
 use columns::Columns;
+pub(crate) use filling::OUTSIDE;
 
 /// Numbers a node and plane.
 pub(crate) const QUAD: usize = 4;
@@ -98,6 +100,8 @@ pub(crate) struct Grid<T, const D: usize> {
     /// By the number of the domain's side, what it took in the last update; lengths in cells from
     /// node 0.
     pub(crate) taken: Vec<Taken<D>>,
+    /// By node of the tiles' blocks, what [`Grid::measure_filling`] found.
+    excess: Vec<T>,
 }
 
 impl<T: Lanes, const D: usize> Grid<T, D> {
@@ -121,6 +125,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
                 Transfer::Pic | Transfer::Apic => 0.0,
             },
             taken: vec![Taken::NOTHING; 2 * D],
+            excess: Vec::new(),
         }
     }
 
@@ -129,7 +134,8 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        size_of::<T>() * (self.tiles.capacity() + self.nodes.capacity() + self.impulses.capacity())
+        let reals = [&self.tiles, &self.nodes, &self.impulses, &self.excess];
+        size_of::<T>() * reals.map(Vec::capacity).into_iter().sum::<usize>()
             + size_of::<Link<D>>() * self.links.capacity()
             + 4 * (self.links_by_tile.capacity()
                 + self.links_of_block.capacity()

@@ -8,7 +8,7 @@
 use crate::boundary::pointer::Push;
 use crate::boundary::walls::Walls;
 use crate::grid::{Grid, NodeForces};
-use crate::material::{IsaToken, Law, Model};
+use crate::material::{IsaToken, Law, Model, VolumeCorrection};
 use crate::math::Lanes;
 use crate::store::Group;
 use crate::transfer::gather::Bounds;
@@ -48,6 +48,19 @@ pub trait Kernels<const D: usize>: Lanes {
         scheme: Scheme,
         isa: IsaToken,
         out: &mut [Self],
+    );
+    /// The tiles' sums of volumes to the nodes, and what the nodes answer.
+    #[doc(hidden)]
+    fn measure_filling(grid: &mut Grid<Self, D>, isa: IsaToken, walls: &Walls<D>, dx: f64);
+    /// J − 1 set right by the nodes' answers.
+    #[doc(hidden)]
+    fn correct_volume(
+        group: &Group<Self, D>,
+        grid: &Grid<Self, D>,
+        scheme: Scheme,
+        isa: IsaToken,
+        shares: VolumeCorrection,
+        jacobian_minus_one: &mut [Self],
     );
     /// The grid update.
     #[doc(hidden)]
@@ -100,6 +113,24 @@ macro_rules! instance {
                 out: &mut [Self],
             ) {
                 volume::expansion(group, grid, scheme, isa, out);
+            }
+            fn measure_filling(
+                grid: &mut Grid<Self, $d>,
+                isa: IsaToken,
+                walls: &Walls<$d>,
+                dx: f64,
+            ) {
+                grid.measure_filling(isa, walls, dx);
+            }
+            fn correct_volume(
+                group: &Group<Self, $d>,
+                grid: &Grid<Self, $d>,
+                scheme: Scheme,
+                isa: IsaToken,
+                shares: VolumeCorrection,
+                jacobian_minus_one: &mut [Self],
+            ) {
+                volume::correct(group, grid, scheme, isa, shares, jacobian_minus_one);
             }
             fn update(
                 grid: &mut Grid<Self, $d>,

@@ -20,12 +20,13 @@ use crate::boundary::pointer::Push;
 use crate::boundary::walls::Walls;
 use crate::error::SetupError;
 use crate::forces;
-use crate::grid::NodePointer;
+use crate::grid::{NodePointer, OUTSIDE};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
-use crate::material::{ConstitutiveModel, Model, Strain, for_model};
+use crate::material::{ConstitutiveModel, Model, Strain, VolumeCorrection, VolumeRule, for_model};
 use crate::math::{Matrix, Vector};
 use crate::setup::{Deformation, ForceForm, Kernel, ParticleBatch, Setup, Transfer};
-use crate::simulation::Pointer;
+use crate::simulation::{CORRECTION_INTERVAL, Pointer};
+use crate::transfer::volume::shear_rate;
 use std::collections::BTreeMap;
 
 /// A particle of the oracle.
@@ -92,6 +93,8 @@ pub struct Reference<const D: usize> {
     /// Simulated time \[s\].
     time: f64,
     pointer: Option<Pointer>,
+    /// Time since the fluids' volumes were last set right \[s\].
+    uncorrected: f64,
 }
 
 impl<const D: usize> Reference<D> {
@@ -123,6 +126,7 @@ impl<const D: usize> Reference<D> {
                 .collect(),
             time: 0.0,
             pointer: None,
+            uncorrected: 0.0,
             setup: setup.clone(),
             origin: Vector(origin),
             walls,
@@ -179,6 +183,7 @@ impl<const D: usize> Reference<D> {
     /// # Panics
     /// If a particle is nowhere, or so far away that its nodes cannot be counted.
     pub fn substep(&mut self, dt: f64) {
+        self.correct_volumes(dt);
         self.push_particles(dt);
         self.gather_volumes();
         let momentum = self.particles_to_grid(dt);
@@ -206,18 +211,135 @@ impl<const D: usize> Reference<D> {
 
     /// J of the materials that take it from the grid.
     fn gather_volumes(&mut self) {
-        let gathers = |p: &Particle<D>| self.law(p).gathers_volume();
+        let gathers = |p: &Particle<D>| self.law(p).volume_rule() == VolumeRule::Gathered;
         if !self.particles.iter().any(gathers) {
             return;
         }
         let gathered = self.gathered_jacobians();
         let mut particles = core::mem::take(&mut self.particles);
         for (particle, j) in particles.iter_mut().zip(gathered) {
-            if self.law(particle).gathers_volume() {
+            if self.law(particle).volume_rule() == VolumeRule::Gathered {
                 particle.strain = vec![j - 1.0];
             }
         }
         self.particles = particles;
+    }
+
+    /// J of the fluids that want it set right, every [`CORRECTION_INTERVAL`].
+    fn correct_volumes(&mut self, dt: f64) {
+        self.uncorrected += dt;
+        let time = self.uncorrected;
+        let rates: Vec<_> = self
+            .setup
+            .materials
+            .iter()
+            .map(|material| match law::<D>(&material.model).volume_rule() {
+                VolumeRule::Corrected(rates) => Some(rates),
+                VolumeRule::Jacobian | VolumeRule::Gathered => None,
+            })
+            .collect();
+        let cells = self
+            .particles
+            .iter()
+            .filter(|p| rates[p.material].is_some());
+        let cells = cells.map(|p| {
+            let sound =
+                (self.law(p).rest_modulus() / self.setup.materials[p.material].density).sqrt();
+            time * sound / self.setup.dx
+        });
+        if cells.fold(0.0, f64::max) < CORRECTION_INTERVAL {
+            return;
+        }
+        self.uncorrected = 0.0;
+        for (material, rates) in rates.into_iter().enumerate() {
+            if let Some(rates) = rates {
+                self.correct_volume_of(material, rates, time);
+            }
+        }
+    }
+
+    /// (7h) and (7i) for one fluid, after `time` \[s\].
+    fn correct_volume_of(&mut self, material: usize, rates: VolumeCorrection, time: f64) {
+        // V⁰, V⁰(J − 1); the same of this fluid.
+        let mut nodes = Grid::<[f64; 4], D>::new();
+        for p in &self.particles {
+            let e = (1.0 + self.jacobian_minus_one(p)) * self.plastic_jacobian(p) - 1.0;
+            let own = if p.material == material { 1.0 } else { 0.0 };
+            for Touch { node, w, .. } in self.touched_nodes(p) {
+                let sums = nodes.entry(node).or_default();
+                for (sum, factor) in sums.iter_mut().zip([1.0, e, own, own * e]) {
+                    *sum += w * p.volume0 * factor;
+                }
+            }
+        }
+        self.mirror_volumes(&mut nodes);
+        let cell = self.setup.dx.powi(D as i32);
+        let full = |node: &[i64; D]| {
+            nodes
+                .get(node)
+                .is_some_and(|sums| sums[0] >= OUTSIDE * cell)
+        };
+        let excess = |node: &[i64; D], sums: &[f64; 4]| {
+            let mut around = (0..3_i64.pow(D as u32)).map(|number| {
+                core::array::from_fn(|axis| node[axis] + number / 3_i64.pow(axis as u32) % 3 - 1)
+            });
+            let inside = around.all(|beside| {
+                self.walls.is_behind_plane(beside) || full(&self.walls.canonical(beside))
+            });
+            if inside && full(node) {
+                (sums[0] + sums[1]) / cell - 1.0
+            } else {
+                0.0
+            }
+        };
+        let answers: Grid<_, D> = nodes
+            .iter()
+            .map(|(node, sums)| {
+                let mean = if sums[2] > 0.0 {
+                    sums[3] / sums[2]
+                } else {
+                    0.0
+                };
+                (*node, (mean, excess(node, sums)))
+            })
+            .collect();
+        let mut particles = core::mem::take(&mut self.particles);
+        for p in particles.iter_mut().filter(|p| p.material == material) {
+            let (mut mean, mut excess) = (0.0, 0.0);
+            for Touch { node, w, .. } in self.touched_nodes(p) {
+                let answer = answers[&node];
+                mean += w * answer.0;
+                excess += w * answer.1;
+            }
+            let strained = time * shear_rate(p.affine);
+            let share = |rate: f64| rate * strained / (1.0 + rate * strained);
+            let e = self.jacobian_minus_one(p);
+            let smoothed = e + share(rates.smoothing) * (mean - e); // (7h)
+            p.strain = vec![smoothed - share(rates.correction) * excess]; // (7i)
+        }
+        self.particles = particles;
+    }
+
+    /// Adds to the volumes of nodes at walls on their planes those of the mirror images.
+    fn mirror_volumes(&self, nodes: &mut Grid<[f64; 4], D>) {
+        for wall in &self.walls.planes {
+            let on_plane = nodes.keys().filter(|node| node[wall.axis] == wall.node);
+            for node in on_plane.copied().collect::<Vec<_>>() {
+                let beside = [-1, 1].map(|step| {
+                    let mut place = node;
+                    place[wall.axis] += step;
+                    place
+                });
+                let of = |place| nodes.get(place).copied().unwrap_or_default();
+                let [one, other] = [of(&beside[0]), of(&beside[1])];
+                let both: [f64; 4] = core::array::from_fn(|lane| one[lane] + other[lane]);
+                let twice = of(&node).map(|sum| sum + sum);
+                nodes.insert(node, twice);
+                for place in beside {
+                    nodes.insert(place, both);
+                }
+            }
+        }
     }
 
     /// By particle, how much more room there is on the grid than its rest volumes need.
@@ -650,7 +772,8 @@ trait Law<const D: usize> {
     fn kirchhoff_stress(&self, strain: &[f64], gradient: Matrix<f64, D>) -> Matrix<f64, D>;
     fn advance(&self, strain: &[f64], increment: Matrix<f64, D>) -> Vec<f64>;
     fn energy_density(&self, strain: &[f64]) -> f64;
-    fn gathers_volume(&self) -> bool;
+    fn volume_rule(&self) -> VolumeRule;
+    fn rest_modulus(&self) -> f64;
 }
 
 fn law<const D: usize>(model: &Model) -> &dyn Law<D> {
@@ -680,8 +803,15 @@ impl<M: ConstitutiveModel<D>, const D: usize> Law<D> for M {
     fn energy_density(&self, strain: &[f64]) -> f64 {
         self.energy_density(M::Strain::<f64>::read(|column| strain[column]))
     }
-    fn gathers_volume(&self) -> bool {
-        M::Strain::<f64>::JACOBIAN_COLUMN.is_some() && ConstitutiveModel::<D>::gathers_volume(self)
+    fn rest_modulus(&self) -> f64 {
+        self.wave_modulus(M::Strain::rest(0.0_f64))
+    }
+
+    fn volume_rule(&self) -> VolumeRule {
+        match M::Strain::<f64>::JACOBIAN_COLUMN {
+            Some(_) => ConstitutiveModel::<D>::volume_rule(self),
+            None => VolumeRule::Jacobian,
+        }
     }
 }
 

@@ -13,7 +13,7 @@ use crate::error::{DtLimit, Failure, SetupError};
 use crate::forces::{self, Force};
 use crate::grid::{Grid, NodeForces, NodePointer};
 use crate::instance::Instance;
-use crate::material::{IsaToken, Law};
+use crate::material::{IsaToken, Law, VolumeCorrection};
 use crate::math::Vector;
 use crate::particles::{Field, Snapshot};
 use crate::probe::{self, ProbeSamples, Readings};
@@ -23,6 +23,9 @@ use crate::step::StepControl;
 use crate::store::{Group, Layout, PerParticle, Run, block_edge, locate};
 use crate::transfer::Scheme;
 use crate::transfer::scatter::What;
+
+/// How far sound goes, in cells, between two corrections of the fluids' volumes.
+pub(crate) const CORRECTION_INTERVAL: f64 = 5.0;
 
 /// What can be told to a running simulation. Vectors have three components; 2D ignores the third.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -179,6 +182,8 @@ pub struct Simulation<T: Instance<D>, const D: usize> {
     sorter: Sorter<T, D>,
     /// Cells that particles may have moved since they were sorted.
     drift: f64,
+    /// Time since the fluids' volumes were last set right \[s\].
+    uncorrected: f64,
     pointer: Option<Pointer>,
     /// By the number of the domain's side, what it has taken since the start; lengths in metres.
     taken: Vec<Taken<D>>,
@@ -253,6 +258,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             groups,
             sorter: Sorter::default(),
             drift: 0.0,
+            uncorrected: 0.0,
             pointer: None,
             taken: vec![Taken::NOTHING; 2 * D],
             escaped: Escaped::default(),
@@ -526,6 +532,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     /// One substep of length `dt` \[s\].
     fn substep_of(&mut self, dt: f64, limit: DtLimit) -> Result<(), Failure> {
         self.sort_if_drifted();
+        self.correct_volumes(dt);
         self.push_particles(dt);
         self.scatter(dt); // (1)–(4)
         self.update(dt);
@@ -556,7 +563,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
 
     /// Rest volumes to the nodes, before an update has run.
     pub(crate) fn rest_volume_to_grid(&mut self) {
-        self.scatter_what(What::Volume, 0.0);
+        self.scatter_what(What::Volume { corrected: false }, 0.0);
         T::sum_tiles(&mut self.grid, self.isa);
     }
 
@@ -574,6 +581,56 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                 T::expansion(group, &self.grid, self.scheme, self.isa, &mut out);
                 group.columns[column] = out;
             }
+        }
+    }
+
+    /// (7h) and (7i) for the fluids that want them, every [`CORRECTION_INTERVAL`].
+    fn correct_volumes(&mut self, dt: f64) {
+        let corrected = |group: &Group<T, D>| {
+            let (column, rates) = group.law.corrected_column()?;
+            (group.len() > 0).then_some((column, rates))
+        };
+        let cells_of = |group: &Group<T, D>, time: f64| time * group.sound_speed / self.setup.dx;
+        let time = self.uncorrected + dt;
+        self.uncorrected = time;
+        let fluids = self
+            .groups
+            .iter()
+            .filter(|group| corrected(group).is_some());
+        let cells = fluids
+            .map(|group| cells_of(group, time))
+            .fold(0.0, f64::max);
+        if cells < CORRECTION_INTERVAL {
+            return;
+        }
+        self.uncorrected = 0.0;
+        for index in 0..self.groups.len() {
+            let Some((column, rates)) = corrected(&self.groups[index]) else {
+                continue;
+            };
+            for (other, group) in self.groups.iter().enumerate() {
+                let what = What::Volume {
+                    corrected: other == index,
+                };
+                T::scatter(
+                    group,
+                    self.scheme,
+                    self.isa,
+                    0.0,
+                    what,
+                    self.grid.tiles_mut(),
+                );
+            }
+            T::measure_filling(&mut self.grid, self.isa, &self.walls, self.setup.dx);
+            let shares = VolumeCorrection {
+                smoothing: rates.smoothing * time,
+                correction: rates.correction * time,
+            };
+            let group = &mut self.groups[index];
+            let column = Layout::strain(D) + column;
+            let mut e = core::mem::take(&mut group.columns[column]);
+            T::correct_volume(group, &self.grid, self.scheme, self.isa, shares, &mut e);
+            group.columns[column] = e;
         }
     }
 

@@ -102,6 +102,8 @@ pub(crate) struct Group<T: Lanes, const D: usize> {
     pub(crate) law: Box<dyn Law<T, D>>,
     /// Density at rest.
     pub(crate) density: f64,
+    /// Speed of sound at rest.
+    pub(crate) sound_speed: f64,
     pub(crate) columns: Vec<Vec<T>>,
     pub(crate) mass: PerParticle<T>,
     pub(crate) volume0: PerParticle<T>,
@@ -113,10 +115,13 @@ pub(crate) struct Group<T: Lanes, const D: usize> {
 
 impl<T: Lanes, const D: usize> Group<T, D> {
     pub(crate) fn new(law: Box<dyn Law<T, D>>, density: f64) -> Self {
+        let rest = vec![vec![T::default()]; law.strain_columns()];
+        let sound_speed = (law.wave_modulus(&rest, 1) / density).sqrt();
         let columns = Layout::strain(D) + law.strain_columns();
         Self {
             law,
             density,
+            sound_speed,
             columns: vec![Vec::new(); columns],
             mass: PerParticle::Uniform(T::default()),
             volume0: PerParticle::Uniform(T::default()),

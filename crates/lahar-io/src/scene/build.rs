@@ -1,9 +1,11 @@
 //! From a plan to a simulation with its particles.
 
 use super::plan::{Body, Plan, Source, Volume};
-use crate::sampling::{Random, sample};
+use crate::even::even_volumes;
+use crate::sampling::{Random, Sampling, sample};
 use crate::shape::Shape;
-use lahar::{Deformation, ParticleBatch, Setup};
+use lahar::material::Fluid;
+use lahar::{Deformation, Model, ParticleBatch, Setup};
 
 impl<const D: usize> Plan<D> {
     /// What the simulator is made from.
@@ -31,8 +33,14 @@ impl<const D: usize> Plan<D> {
             .iter()
             .enumerate()
             .map(|(index, body)| {
-                let density = self.materials[body.material].density;
-                batch(body, index, seed, (density, self.dx))
+                let material = &self.materials[body.material];
+                let mut batch = self.batch(body, index, seed, material.density);
+                if let Model::Fluid(fluid) = &material.model
+                    && self.starts_hydrostatic(body, fluid)
+                {
+                    put_under_pressure(&mut batch, body, fluid, material.density, self.gravity);
+                }
+                batch
             })
             .collect()
     }
@@ -58,63 +66,100 @@ impl<const D: usize> Plan<D> {
         }
         found
     }
+
+    fn batch(&self, body: &Body<D>, index: usize, seed: u64, density: f64) -> ParticleBatch<D> {
+        let mut batch = ParticleBatch {
+            material: body.material,
+            body: index as u32,
+            ..ParticleBatch::default()
+        };
+        match &body.source {
+            Source::Shape {
+                region,
+                spacing,
+                count,
+                sampling,
+            } => {
+                batch.position = sample(
+                    region,
+                    *spacing,
+                    *count,
+                    *sampling,
+                    &mut Random::new(seed, index as u64),
+                );
+                batch.volume = if body.volume == Volume::Even && *sampling != Sampling::Lattice {
+                    let origin = self.domain.as_ref().map_or([0.0; D], |domain| domain.min);
+                    even_volumes(region, &batch.position, (origin, self.dx), self.kernel)
+                } else {
+                    vec![region.volume() / batch.position.len().max(1) as f64]
+                };
+            }
+            Source::List(list) => {
+                batch.position = list.position.clone();
+                batch.velocity = list.velocity.clone();
+                batch.mass = list.mass.clone();
+                batch.volume = if list.volume.is_empty() {
+                    list.mass.iter().map(|mass| mass / density).collect()
+                } else {
+                    list.volume.clone()
+                };
+                batch.affine = list.affine.clone();
+                batch.deformation = if !list.deformation_gradient.is_empty() {
+                    Deformation::Gradient(list.deformation_gradient.clone())
+                } else if !list.jacobian.is_empty() {
+                    Deformation::Jacobian(list.jacobian.clone())
+                } else {
+                    Deformation::Rest
+                };
+            }
+        }
+        match body.volume {
+            Volume::Source | Volume::Even => {}
+            Volume::Measured => batch.measure_volume = true,
+            Volume::Body(volume) => {
+                batch.volume = vec![volume / batch.position.len().max(1) as f64]
+            }
+            Volume::Particle(volume) => batch.volume = vec![volume],
+        }
+        add_motion(&mut batch, body, self.dx);
+        add_spread(&mut batch, body, seed);
+        batch
+    }
 }
 
-fn batch<const D: usize>(
+/// Compresses the particles as a body at rest is by its own weight, with a free surface where its
+/// highest point is: J by depth, and rest volumes so much larger than the room they take.
+fn put_under_pressure<const D: usize>(
+    batch: &mut ParticleBatch<D>,
     body: &Body<D>,
-    index: usize,
-    seed: u64,
-    (density, dx): (f64, f64),
-) -> ParticleBatch<D> {
-    let mut batch = ParticleBatch {
-        material: body.material,
-        body: index as u32,
-        ..ParticleBatch::default()
+    fluid: &Fluid,
+    density: f64,
+    gravity: [f64; D],
+) {
+    let bounds = body.bounds();
+    // −g·x of the highest corner: the potential of the surface [m²/s²].
+    let surface: f64 = (0..D)
+        .map(|i| (-gravity[i] * bounds.min[i]).max(-gravity[i] * bounds.max[i]))
+        .sum();
+    let jacobian: Vec<f64> = batch
+        .position
+        .iter()
+        .map(|x| {
+            let potential: f64 = (0..D).map(|i| -gravity[i] * x[i]).sum();
+            1.0 + fluid.jacobian_minus_one_below(surface - potential, density)
+        })
+        .collect();
+    let of = |values: &[f64], i: usize| {
+        if values.len() == 1 {
+            values[0]
+        } else {
+            values[i]
+        }
     };
-    match &body.source {
-        Source::Shape {
-            region,
-            spacing,
-            count,
-            sampling,
-        } => {
-            batch.position = sample(
-                region,
-                *spacing,
-                *count,
-                *sampling,
-                &mut Random::new(seed, index as u64),
-            );
-            batch.volume = vec![region.volume() / batch.position.len().max(1) as f64];
-        }
-        Source::List(list) => {
-            batch.position = list.position.clone();
-            batch.velocity = list.velocity.clone();
-            batch.mass = list.mass.clone();
-            batch.volume = if list.volume.is_empty() {
-                list.mass.iter().map(|mass| mass / density).collect()
-            } else {
-                list.volume.clone()
-            };
-            batch.affine = list.affine.clone();
-            batch.deformation = if !list.deformation_gradient.is_empty() {
-                Deformation::Gradient(list.deformation_gradient.clone())
-            } else if !list.jacobian.is_empty() {
-                Deformation::Jacobian(list.jacobian.clone())
-            } else {
-                Deformation::Rest
-            };
-        }
-    }
-    match body.volume {
-        Volume::Source => {}
-        Volume::Measured => batch.measure_volume = true,
-        Volume::Body(volume) => batch.volume = vec![volume / batch.position.len().max(1) as f64],
-        Volume::Particle(volume) => batch.volume = vec![volume],
-    }
-    add_motion(&mut batch, body, dx);
-    add_spread(&mut batch, body, seed);
-    batch
+    batch.volume = (0..jacobian.len())
+        .map(|i| of(&batch.volume, i) / jacobian[i])
+        .collect();
+    batch.deformation = Deformation::Jacobian(jacobian);
 }
 
 /// Adds v(x) + G (x − centre of mass) to the velocities, and ∂v/∂x + G to the affine matrices.

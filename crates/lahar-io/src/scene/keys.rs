@@ -770,10 +770,24 @@ pub(crate) static FLUID: Section = Section {
             ),
             key(
                 "volume",
-                Kind::Word(&["jacobian", "gathered"]),
+                Kind::Word(&["corrected", "jacobian", "gathered"]),
                 "",
-                Value("\"jacobian\""),
-                "J follows the motion, or is gathered from the grid before each substep: without memory, so that nothing drifts, but what lies at a surface, or at a wall on its plane, counts as expanded.",
+                Value("\"corrected\""),
+                "J follows the motion and, as the fluid deforms, is set right by what the grid says of how full it is; or only follows the motion, which drifts; or is gathered from the grid before each substep: without memory, so that nothing drifts, but what lies at a surface, or at a wall on its plane, counts as expanded.",
+            ),
+            key(
+                "volume_smoothing",
+                Kind::Number(Bound::NotNegative),
+                "",
+                Words("5.0, with volume = `corrected` only"),
+                "How much of the difference between J and its mean around a particle goes while the fluid is sheared by 1.",
+            ),
+            key(
+                "volume_correction",
+                Kind::Number(Bound::NotNegative),
+                "",
+                Words("3.0, with volume = `corrected` only"),
+                "How much of the difference between the volume that particles take and the room there is goes into J while the fluid is sheared by 1.",
             ),
             key(
                 "viscous_stress",
@@ -962,10 +976,20 @@ pub(crate) static BODY: Section = Section {
         ),
         key(
             "volume",
-            Kind::OneOf(&[Kind::Number(Bound::Positive), Kind::Word(&["measured"])]),
+            Kind::OneOf(&[
+                Kind::Number(Bound::Positive),
+                Kind::Word(&["even", "alike", "measured"]),
+            ]),
             "m³",
-            Words("the shape's"),
-            "Rest volume of the whole body, shared by its particles alike; `\"measured\"`: masses as without this key, and each particle's rest volume is the room that it has on the grid at the start.",
+            Words("`\"even\"` for fluids whose particles are not on a lattice, else `\"alike\"`"),
+            "Rest volume of the whole body, shared by its particles alike. `\"alike\"`: the shape's; `\"even\"`: the shape's, with less for particles that stand close, so that the grid is evenly filled; `\"measured\"`: masses as without this key, and each particle's rest volume is the room that it has on the grid at the start.",
+        ),
+        key(
+            "pressure",
+            Kind::Word(&["auto", "none", "hydrostatic"]),
+            "",
+            Value("\"auto\""),
+            "Pressure at the start, fluids only: none, or that of a body at rest under gravity whose surface is at its highest point; `auto`: that, if it stands on the floor, does not move and its volume is `corrected`.",
         ),
         key(
             "color",

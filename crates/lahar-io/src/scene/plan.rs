@@ -11,8 +11,8 @@ use crate::particle_list::ParticleList;
 use crate::sampling::{Sampling, expected_count};
 use crate::shape::{Bounds, Region, Shape};
 use lahar::material::{
-    Corotated, Dust, Eos, Fluid, FluidVolume, HardeningFrom, JacobianUpdate, NeoHookean, Snow,
-    ViscousStress, lame,
+    Corotated, Dust, Eos, Fluid, HardeningFrom, JacobianUpdate, NeoHookean, Snow, ViscousStress,
+    VolumeCorrection, VolumeRule, lame,
 };
 use lahar::{
     Contact, Corners, Cushion, Domain, Force, ForceForm, Kernel, Material, Model, Probe, Sides,
@@ -55,6 +55,7 @@ pub(crate) struct Body<const D: usize> {
     /// ∂v_i/∂x_j of spin and velocity gradient together \[1/s\].
     pub(crate) gradient: [[f64; D]; D],
     pub(crate) volume: Volume,
+    pub(crate) pressure: StartPressure,
 }
 
 /// Where the particles come from.
@@ -78,11 +79,36 @@ pub(crate) enum Volume {
     Body(f64),
     /// The scene, for a particle \[m³\].
     Particle(f64),
+    /// The shape's, shared so that the grid is evenly filled; on a lattice it is.
+    Even,
     /// The grid, at the start.
     Measured,
 }
 
+/// The pressure that a fluid body starts with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StartPressure {
+    None,
+    /// That of a body at rest under gravity.
+    Hydrostatic,
+    /// That, if the body is at rest.
+    Automatic,
+}
+
 impl<const D: usize> Body<D> {
+    /// Whether nothing of it moves at the start.
+    fn is_still(&self) -> bool {
+        let listed = match &self.source {
+            Source::Shape { .. } => false,
+            Source::List(list) => !list.velocity.is_empty() || !list.affine.is_empty(),
+        };
+        !listed
+            && self.velocity.is_constant()
+            && self.velocity.constants() == [0.0; D]
+            && self.velocity_spread == [0.0; D]
+            && self.gradient == [[0.0; D]; D]
+    }
+
     /// A box around its particles \[m\].
     pub(crate) fn bounds(&self) -> Bounds<D> {
         match &self.source {
@@ -282,6 +308,41 @@ impl<const D: usize> Plan<D> {
                 .fold(f64::INFINITY, f64::min),
         };
         (squared + 2.0 * g * (top - floor).max(0.0)).sqrt()
+    }
+
+    /// Whether a body of fluid starts with the pressure of its own weight.
+    pub(crate) fn starts_hydrostatic(&self, body: &Body<D>, fluid: &Fluid) -> bool {
+        match body.pressure {
+            StartPressure::None => false,
+            StartPressure::Hydrostatic => true,
+            StartPressure::Automatic => {
+                let corrected = matches!(fluid.volume, VolumeRule::Corrected(_));
+                corrected && body.is_still() && self.stands_on_floor(body)
+            }
+        }
+    }
+
+    /// Whether a body touches the wall that it is drawn to most.
+    fn stands_on_floor(&self, body: &Body<D>) -> bool {
+        let Some(domain) = &self.domain else {
+            return false;
+        };
+        let g = self.gravity;
+        let axis = (0..D).fold(0, |most, axis| {
+            if g[axis].abs() > g[most].abs() {
+                axis
+            } else {
+                most
+            }
+        });
+        let Sides::Walls { low, high } = domain.sides[axis] else {
+            return false;
+        };
+        let bounds = body.bounds();
+        // Half a cell: particles of a list are not on the wall themselves.
+        let near = |gap: f64| gap.abs() <= 0.5 * self.dx;
+        (g[axis] < 0.0 && low != Contact::Open && near(bounds.min[axis] - domain.min[axis]))
+            || (g[axis] > 0.0 && high != Contact::Open && near(bounds.max[axis] - domain.max[axis]))
     }
 
     /// Gives every fluid its bulk modulus.
@@ -749,11 +810,7 @@ fn read_fluid(table: &Reader<'_>) -> Result<(Fluid, Stiffness), SceneError> {
         } else {
             JacobianUpdate::Trace
         },
-        volume: if table.text("volume")? == "gathered" {
-            FluidVolume::Gathered
-        } else {
-            FluidVolume::Jacobian
-        },
+        volume: read_volume_rule(table)?,
         viscous_stress: if table.text("viscous_stress")? == "engineering" {
             ViscousStress::Engineering
         } else {
@@ -761,6 +818,30 @@ fn read_fluid(table: &Reader<'_>) -> Result<(Fluid, Stiffness), SceneError> {
         },
     };
     Ok((fluid, stiffness))
+}
+
+/// Rates of volume = "corrected", by the table of cases in docs/validation.md.
+const SMOOTHING: f64 = 5.0;
+const CORRECTION: f64 = 3.0;
+
+fn read_volume_rule(table: &Reader<'_>) -> Result<VolumeRule, SceneError> {
+    let rates = ["volume_smoothing", "volume_correction"];
+    let rule = match table.text("volume")? {
+        "corrected" => {
+            return Ok(VolumeRule::Corrected(VolumeCorrection {
+                smoothing: table.opt_number(rates[0]).unwrap_or(SMOOTHING),
+                correction: table.opt_number(rates[1]).unwrap_or(CORRECTION),
+            }));
+        }
+        "gathered" => VolumeRule::Gathered,
+        _ => VolumeRule::Jacobian,
+    };
+    match rates.into_iter().find(|key| table.has(key)) {
+        Some(key) => {
+            Err(table.error_at_key(key, format!("\"{key}\" is for volume = \"corrected\" only")))
+        }
+        None => Ok(rule),
+    }
 }
 
 fn read_snow<const D: usize>(table: &Reader<'_>) -> Result<Snow, SceneError> {
@@ -861,6 +942,7 @@ fn read_body<const D: usize>(
             None => error.hint(format!("there are: {}", names.join(", "))),
         });
     };
+    let is_fluid = matches!(materials[material].model, Model::Fluid(_));
     let volume = match (
         table.opt_number("volume"),
         table.opt_number("particle_volume"),
@@ -873,8 +955,13 @@ fn read_body<const D: usize>(
         }
         (Some(volume), _) => Volume::Body(volume),
         (_, Some(volume)) => Volume::Particle(volume),
-        _ if table.has("volume") => Volume::Measured,
-        _ => Volume::Source,
+        _ => match table.opt_text("volume") {
+            Some("measured") => Volume::Measured,
+            Some("even") => Volume::Even,
+            Some(_) => Volume::Source,
+            None if is_fluid => Volume::Even,
+            None => Volume::Source,
+        },
     };
     let clip = domain.map_or(Bounds::EVERYTHING, |domain| Bounds {
         min: domain.min,
@@ -894,6 +981,11 @@ fn read_body<const D: usize>(
         velocity_spread: table.opt_vector("velocity_spread").unwrap_or([0.0; D]),
         gradient: read_gradient(table)?,
         volume,
+        pressure: match table.text("pressure")? {
+            "none" => StartPressure::None,
+            "hydrostatic" => StartPressure::Hydrostatic,
+            _ => StartPressure::Automatic,
+        },
     })
 }
 
@@ -996,7 +1088,7 @@ fn read_list<const D: usize>(
             point(&clip.max)
         )));
     }
-    if matches!(volume, Volume::Source | Volume::Measured)
+    if matches!(volume, Volume::Source | Volume::Even | Volume::Measured)
         && list.volume.is_empty()
         && list.mass.is_empty()
     {

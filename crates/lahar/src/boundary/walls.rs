@@ -266,6 +266,14 @@ impl<const D: usize> Walls<D> {
         velocity
     }
 
+    /// Whether `node` is beyond a wall on its plane.
+    #[inline(always)]
+    pub(crate) fn is_behind_plane(&self, node: [i64; D]) -> bool {
+        self.planes
+            .iter()
+            .any(|wall| (node[wall.axis] - wall.node) * i64::from(wall.inward) < 0)
+    }
+
     /// `node` on its periodic axes brought into 0 .. period.
     pub(crate) fn canonical(&self, mut node: [i64; D]) -> [i64; D] {
         for axis in 0..D {

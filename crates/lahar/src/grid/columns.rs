@@ -101,6 +101,27 @@ impl<const D: usize> Columns<D> {
     }
 }
 
+impl<const D: usize> Columns<D> {
+    /// Adds to the volumes that nodes near walls hold those of the mirror images.
+    pub(super) fn mirror_volumes<T: Lanes>(&self, nodes: &mut [T], planes: usize) {
+        for columns in &self.0 {
+            for places in columns {
+                let at = places.map(|place| place.map(|place| quad_at(place, planes)));
+                for lane in 0..QUAD {
+                    let read = |at: Option<usize>| at.map_or(T::default(), |at| nodes[at + lane]);
+                    let [beyond, plane, inside] = at.map(read);
+                    let mirrored = [beyond + inside, plane + plane, beyond + inside];
+                    for (at, sum) in at.into_iter().zip(mirrored) {
+                        if let Some(at) = at {
+                            nodes[at + lane] = sum;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
 /// The columns of `wall` through `block`, which its plane passes.
 fn push_columns<const D: usize>(
     block: [i32; D],

@@ -3,7 +3,7 @@
 //! The pressure is computed from e = J − 1, which is what is stored. A fluid at rest lives at
 //! |e| ≈ 10⁻⁵, where J^−γ − 1 formed from J has lost half the digits of an `f32`.
 
-use super::{ConstitutiveModel, Dilatation};
+use super::{ConstitutiveModel, Dilatation, VolumeRule};
 use crate::math::near_one::{minus_ln_1p, power_minus_one};
 use crate::math::{Matrix, Real, Scalar};
 
@@ -41,7 +41,7 @@ pub struct Fluid {
     /// How J follows the motion, if it does.
     pub jacobian_update: JacobianUpdate,
     /// Where J comes from.
-    pub volume: FluidVolume,
+    pub volume: VolumeRule,
     /// Which velocity gradients viscosity resists.
     pub viscous_stress: ViscousStress,
 }
@@ -66,17 +66,6 @@ pub enum JacobianUpdate {
     Trace,
     /// J ← J det(I + Δt C), as in mpm99.
     Determinant,
-}
-
-/// Where J comes from.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum FluidVolume {
-    /// It follows the motion of the particle, (7).
-    #[default]
-    Jacobian,
-    /// It is gathered from the grid before each substep, (7g): no memory, and so no drift; but a free
-    /// surface, where the grid is half empty, counts as expanded.
-    Gathered,
 }
 
 /// Which velocity gradients viscosity resists.
@@ -114,7 +103,7 @@ impl Fluid {
             bulk_viscosity: 0.0,
             tension: 0.0,
             jacobian_update: JacobianUpdate::Trace,
-            volume: FluidVolume::Jacobian,
+            volume: VolumeRule::Jacobian,
             viscous_stress: ViscousStress::Newtonian,
         }
     }
@@ -127,6 +116,17 @@ impl Fluid {
             Eos::Tait { gamma } if gamma * p > -1.0 => libm::expm1(-libm::log1p(gamma * p) / gamma),
             Eos::Tait { .. } => f64::INFINITY,
             Eos::LinearJ => -p,
+        }
+    }
+
+    /// J − 1 in a fluid at rest, of this `density` at no pressure \[kg/m³\], where its weight has done the
+    /// work `potential` = g × depth below the surface \[m²/s²\]: ∫ dp/ρ = g × depth.
+    pub fn jacobian_minus_one_below(&self, potential: f64, density: f64) -> f64 {
+        let w = potential * density / self.bulk_modulus;
+        match self.eos {
+            Eos::Tait { gamma: 1.0 } => libm::expm1(-w),
+            Eos::Tait { gamma } => libm::expm1(-libm::log1p((gamma - 1.0) * w) / (gamma - 1.0)),
+            Eos::LinearJ => (1.0 - 2.0 * w).max(SMALLEST_JACOBIAN).sqrt() - 1.0,
         }
     }
 
@@ -219,7 +219,7 @@ impl<const D: usize> ConstitutiveModel<D> for Fluid {
 
     #[inline(always)]
     fn advance<R: Real>(&self, strain: Dilatation<R>, increment: Matrix<R, D>) -> Dilatation<R> {
-        if self.volume == FluidVolume::Gathered {
+        if self.volume == VolumeRule::Gathered {
             return strain;
         }
         let e = strain.jacobian_minus_one;
@@ -252,8 +252,8 @@ impl<const D: usize> ConstitutiveModel<D> for Fluid {
         j.power(exponent) * e.lit(self.bulk_modulus)
     }
 
-    fn gathers_volume(&self) -> bool {
-        self.volume == FluidVolume::Gathered
+    fn volume_rule(&self) -> VolumeRule {
+        self.volume
     }
 
     /// What damps a longitudinal wave, κ + 2μ(1 − 1/d), or a shear wave, μ: the larger.

@@ -5,7 +5,7 @@
 //! code is a sum of laws and transfers and not their product, and so that laws from outside the
 //! crate run as fast as ours.
 
-use super::{ConstitutiveModel, Model, Strain, for_model};
+use super::{ConstitutiveModel, Model, Strain, VolumeCorrection, VolumeRule, for_model};
 use crate::dispatch::on_level;
 use crate::math::{Lanes, Matrix, Real};
 use fearless_simd::{Level, Simd};
@@ -38,6 +38,17 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
     fn strain_columns(&self) -> usize;
     /// The column of J − 1, for a model that gathers it from the grid before each substep.
     fn gathered_column(&self) -> Option<usize>;
+    /// The column of J − 1 and how fast it is set right, for a model that wants that.
+    fn corrected_column(&self) -> Option<(usize, VolumeCorrection)>;
+    /// Writes J − 1 of particles `start .. start + count` (at most a chunk), plastic flow included.
+    fn jacobian_minus_one(
+        &self,
+        isa: IsaToken,
+        strain: &[Vec<T>],
+        start: usize,
+        count: usize,
+        out: &mut [T],
+    );
     /// Writes Kirchhoff stress of particles `start .. start + count` (at most a chunk):
     /// `out[(j·D + i)·CHUNK + p]` = τ_ij \[Pa\].
     fn kirchhoff_stress(
@@ -122,6 +133,15 @@ pub fn law<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static>(
 
 struct Compiled<M>(M);
 
+impl<M> Compiled<M> {
+    fn jacobian_column<const D: usize>(&self) -> Option<usize>
+    where
+        M: ConstitutiveModel<D>,
+    {
+        <M::Strain<f64> as Strain<f64, D>>::JACOBIAN_COLUMN
+    }
+}
+
 /// A register from `slice[..count]`, `count` at least 1: what is past the end repeats the last.
 #[inline(always)]
 pub(crate) fn load_part<S: Simd, T: Lanes>(simd: S, slice: &[T], count: usize) -> T::Of<S> {
@@ -152,7 +172,26 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D>> Law<T, D> for Compiled<M
     }
 
     fn gathered_column(&self) -> Option<usize> {
-        <M::Strain<f64> as Strain<f64, D>>::JACOBIAN_COLUMN.filter(|_| self.0.gathers_volume())
+        self.jacobian_column()
+            .filter(|_| self.0.volume_rule() == VolumeRule::Gathered)
+    }
+
+    fn corrected_column(&self) -> Option<(usize, VolumeCorrection)> {
+        match self.0.volume_rule() {
+            VolumeRule::Corrected(rates) => Some((self.jacobian_column()?, rates)),
+            VolumeRule::Jacobian | VolumeRule::Gathered => None,
+        }
+    }
+
+    fn jacobian_minus_one(
+        &self,
+        isa: IsaToken,
+        strain: &[Vec<T>],
+        start: usize,
+        count: usize,
+        out: &mut [T],
+    ) {
+        on_level!(isa.0, simd => jacobian_chunk::<_, T, D, M>(simd, strain, start, count, out));
     }
 
     fn kirchhoff_stress(
@@ -242,6 +281,28 @@ fn stress_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
                 T::store::<S>(tau[(i, j)], &mut out[(j * D + i) * CHUNK + p..]);
             }
         }
+        p += T::WIDTH;
+    }
+}
+
+#[inline(always)]
+fn jacobian_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
+    simd: S,
+    strain: &[Vec<T>],
+    start: usize,
+    count: usize,
+    out: &mut [T],
+) {
+    let mut p = 0;
+    while p < count {
+        let left = count - p;
+        let strain: M::Strain<T::Of<S>> =
+            M::Strain::read(|column| load_part(simd, &strain[column][start + p..], left));
+        let (elastic, plastic) = (
+            strain.jacobian_minus_one(),
+            strain.plastic_jacobian_minus_one(),
+        );
+        T::store::<S>(elastic + plastic + elastic * plastic, &mut out[p..]);
         p += T::WIDTH;
     }
 }

@@ -14,7 +14,7 @@ mod snow;
 mod strain;
 
 pub use corotated::Corotated;
-pub use fluid::{Eos, Fluid, FluidVolume, JacobianUpdate, SMALLEST_JACOBIAN, TORN, ViscousStress};
+pub use fluid::{Eos, Fluid, JacobianUpdate, SMALLEST_JACOBIAN, TORN, ViscousStress};
 pub(crate) use law::{CHUNK, built_in, load_part, store_part};
 pub use law::{IsaToken, Law, ParticleState, law};
 pub use neo_hookean::{LOGARITHM_ENDS, NeoHookean};
@@ -53,10 +53,9 @@ pub trait ConstitutiveModel<const D: usize>: Copy + Send + Sync {
     /// stiffness ∂²Φ/∂F² in this state, in the current configuration.
     fn wave_modulus<R: Real>(&self, strain: Self::Strain<R>) -> R;
 
-    /// Whether J is gathered from the grid before each substep, equation (7g), instead of following
-    /// the motion. For models whose strain is a [`Dilatation`]; others are not asked.
-    fn gathers_volume(&self) -> bool {
-        false
+    /// Where J comes from. For models whose strain is a [`Dilatation`]; others are not asked.
+    fn volume_rule(&self) -> VolumeRule {
+        VolumeRule::Jacobian
     }
 
     /// Dynamic viscosity \[Pa s\], the largest of the law's (of shear or of longitudinal waves),
@@ -64,6 +63,29 @@ pub trait ConstitutiveModel<const D: usize>: Copy + Send + Sync {
     fn viscosity(&self) -> f64 {
         0.0
     }
+}
+
+/// Where the J of a fluid comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum VolumeRule {
+    /// It follows the motion of the particle, (7).
+    #[default]
+    Jacobian,
+    /// It follows the motion, and now and then is set right by what the grid says, (7h) and (7i).
+    Corrected(VolumeCorrection),
+    /// It is gathered from the grid before each substep, (7g): no memory, and so no drift; but a free
+    /// surface, where the grid is half empty, counts as expanded.
+    Gathered,
+}
+
+/// How fast J is set right: per shear of the fluid, ∫ γ̇ dt. A fluid that does not deform is left alone: at
+/// rest the unevenness of its particles is balanced by that of their J.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VolumeCorrection {
+    /// J goes to the mean around the particle, (7h).
+    pub smoothing: f64,
+    /// J goes to where particles fill the grid as at rest, (7i).
+    pub correction: f64,
 }
 
 /// A scene's named choice of a model.

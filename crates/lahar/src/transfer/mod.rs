@@ -24,7 +24,7 @@ use crate::math::Lanes;
 use crate::setup::{ForceForm, Kernel, Transfer};
 
 /// Numbers of the largest tile: cubic in 3D, two planes.
-const LARGEST_TILE: usize = 2 * tile_plane::<3>(tile_edge::<3>(4));
+pub(crate) const LARGEST_TILE: usize = 2 * tile_plane::<3>(tile_edge::<3>(4));
 
 /// What the loops need to know of scheme, kernel and step; all lengths in cells.
 #[derive(Clone, Copy, Debug)]

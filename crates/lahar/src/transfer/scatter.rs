@@ -15,8 +15,12 @@ use fearless_simd::Simd;
 pub(crate) enum What {
     /// Momentum, mass and the impulse of stress.
     Momentum,
-    /// For gauges and for (7g): rest volume where the first component of momentum would be; mass.
-    Volume,
+    /// For gauges and (7g) to (7i), a quad of V⁰, V⁰ (J − 1), and the same again from a group that is
+    /// `corrected`, zeros from others.
+    Volume {
+        /// Whether this group is the one to be corrected.
+        corrected: bool,
+    },
 }
 
 /// Adds the particles of `group` to `tiles`. A tile that no group has been added to yet is
@@ -88,15 +92,10 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         let plane = self.tile_plane();
         for start in run.rows().step_by(CHUNK) {
             let count = CHUNK.min(run.end as usize - start);
-            if self.what == What::Momentum {
-                self.group.law.kirchhoff_stress(
-                    self.isa,
-                    strain,
-                    affine,
-                    start,
-                    count,
-                    &mut stage.matrix,
-                );
+            let (law, out) = (&self.group.law, &mut stage.matrix);
+            match self.what {
+                What::Momentum => law.kirchhoff_stress(self.isa, strain, affine, start, count, out),
+                What::Volume { .. } => law.jacobian_minus_one(self.isa, strain, start, count, out),
             }
             with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
                 prepare::<_, T, D, K, SPLIT, CLASSIC>(simd, self, start, count, stage);
@@ -223,8 +222,13 @@ fn prepare<
         let m = load_each(simd, &group.mass, start + p, left);
         let zero = m.zero();
         let volume0 = load_each(simd, &group.volume0, start + p, left);
-        if task.what == What::Volume {
-            T::store_quads::<S>([volume0, zero, zero, m], &mut stage.momentum[0][4 * p..]);
+        if let What::Volume { corrected } = task.what {
+            let dilated = volume0 * T::load(simd, &stage.matrix[p..]);
+            let own = if corrected { m.one() } else { zero };
+            T::store_quads::<S>(
+                [volume0, dilated, volume0 * own, dilated * own],
+                &mut stage.momentum[0][4 * p..],
+            );
             for axis in 0..D {
                 T::store_quads::<S>([zero; 4], &mut stage.momentum[1 + axis][4 * p..]);
             }

@@ -1,4 +1,4 @@
-//! How full the grid is where particles are: the gathered J, (7g).
+//! How full the grid is where particles are: the gathered J, (7g), and what is set right by it, (7h), (7i).
 //!
 //! The grid knows how much rest volume lies around a particle. Where a body is as dense as at rest that
 //! is dxᴰ a node; where there is less, what is there has expanded by as much.
@@ -8,11 +8,11 @@ use super::{LARGEST_TILE, Scheme, Stage, rows};
 use crate::dispatch::{on_level, on_portable};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
-use crate::material::{CHUNK, IsaToken, store_part};
-use crate::math::Lanes;
+use crate::material::{CHUNK, IsaToken, VolumeCorrection, load_part, store_part};
+use crate::math::{Lanes, Matrix, Real};
 use crate::parallel;
 use crate::setup::Kernel;
-use crate::store::{Group, Run};
+use crate::store::{Group, Layout, Run};
 use fearless_simd::Simd;
 
 /// Writes J − 1 of every row of `group` to `out`, by what the grid's nodes hold of rest volume (first
@@ -24,14 +24,43 @@ pub(crate) fn expansion<T: Lanes, const D: usize>(
     isa: IsaToken,
     out: &mut [T],
 ) {
-    let task = Task {
+    Task {
         group,
         grid,
         scheme,
         isa,
-    };
-    let grain = parallel::grain(group.len(), 4096);
-    task.halve(&group.runs, 0, out, grain);
+        what: Read::Expansion,
+    }
+    .run(out);
+}
+
+/// Sets J − 1 in `jacobian_minus_one`, a row each of `group`, right by what the nodes answered to
+/// [`Grid::measure_filling`].
+pub(crate) fn correct<T: Lanes, const D: usize>(
+    group: &Group<T, D>,
+    grid: &Grid<T, D>,
+    scheme: Scheme,
+    isa: IsaToken,
+    shares: VolumeCorrection,
+    jacobian_minus_one: &mut [T],
+) {
+    Task {
+        group,
+        grid,
+        scheme,
+        isa,
+        what: Read::Correction(shares),
+    }
+    .run(jacobian_minus_one);
+}
+
+/// What is made of what particles read.
+#[derive(Clone, Copy, Debug)]
+enum Read {
+    /// (7g)
+    Expansion,
+    /// (7h), (7i), by these shares of what is missing.
+    Correction(VolumeCorrection),
 }
 
 struct Task<'a, T: Lanes, const D: usize> {
@@ -39,9 +68,15 @@ struct Task<'a, T: Lanes, const D: usize> {
     grid: &'a Grid<T, D>,
     scheme: Scheme,
     isa: IsaToken,
+    what: Read,
 }
 
 impl<T: Lanes, const D: usize> Task<'_, T, D> {
+    fn run(&self, out: &mut [T]) {
+        let grain = parallel::grain(self.group.len(), 4096);
+        self.halve(&self.group.runs, 0, out, grain);
+    }
+
     /// `out` begins with row `first_row`.
     fn halve(&self, runs: &[Run<D>], first_row: usize, out: &mut [T], grain: usize) {
         let Some((middle, row)) = split_runs(runs, grain) else {
@@ -81,7 +116,16 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
     }
 }
 
-/// (7g) for the particles from row `start` on, as many as `out` has room for.
+/// γ̇ = √(2 D:D) \[1/s\], D the part of the velocity gradient that changes shape.
+#[inline(always)]
+pub(crate) fn shear_rate<R: Real, const D: usize>(velocity_gradient: Matrix<R, D>) -> R {
+    let twice = velocity_gradient + velocity_gradient.transpose();
+    let mean = twice.trace() * twice[(0, 0)].lit(1.0 / D as f64);
+    let deviator = twice - Matrix::scaled_identity(mean);
+    (deviator.squared_norm() * mean.lit(0.5)).sqrt()
+}
+
+/// (7g), or (7h) and (7i), for the particles from row `start` on, as many as `out` has room for.
 #[inline(always)]
 fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
@@ -105,9 +149,26 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     let cell = T::broadcast(simd, T::from_f64(task.scheme.dx.powi(D as i32)));
     let mut p = 0;
     while p < count {
-        let [volume, ..] = T::load_quads(simd, &stage.momentum[0][4 * p..]);
         // Lanes past the end hold what was there before, which is not stored.
-        store_part::<S, T>((cell - volume) / volume, &mut out[p..], count - p); // (7g)
+        let [first, second, ..] = T::load_quads(simd, &stage.momentum[0][4 * p..]);
+        let value = match task.what {
+            Read::Expansion => (cell - first) / first, // (7g)
+            Read::Correction(shares) => {
+                let e = load_part(simd, &out[p..], count - p);
+                let affine = &task.group.columns[Layout::affine(D)..];
+                let c = Matrix::<T::Of<S>, D>::from_fn(|i, j| {
+                    load_part(simd, &affine[j * D + i][start + p..], count - p)
+                });
+                let strained = shear_rate(c);
+                let share = |rate: f64| {
+                    let amount = strained * e.lit(rate);
+                    amount / (amount + e.one())
+                };
+                let smoothed = e + (first - e) * share(shares.smoothing); // (7h)
+                smoothed - second * share(shares.correction) // (7i)
+            }
+        };
+        store_part::<S, T>(value, &mut out[p..], count - p);
         p += T::WIDTH;
     }
 }

@@ -1,7 +1,8 @@
 //! Scenes that several tests run.
 
 use lahar::material::{
-    Corotated, Dust, Eos, Fluid, FluidVolume, HardeningFrom, NeoHookean, Snow, ViscousStress, lame,
+    Corotated, Dust, Eos, Fluid, HardeningFrom, NeoHookean, Snow, ViscousStress, VolumeCorrection, VolumeRule,
+    lame,
 };
 use lahar::particles::{Data, Field, Snapshot};
 use lahar::{
@@ -41,7 +42,10 @@ pub(crate) fn one_of_each() -> Vec<Material> {
                 eos: Eos::Tait { gamma: 7.0 },
                 viscosity: 0.5,
                 bulk_viscosity: 0.1,
-                tension: 0.0,
+                volume: VolumeRule::Corrected(VolumeCorrection {
+                    smoothing: 5.0,
+                    correction: 3.0,
+                }),
                 ..Fluid::inviscid(1000.0 * 5.0 * 5.0)
             }),
         ),
@@ -148,7 +152,7 @@ pub(crate) fn brawl_with_all_options<const D: usize>(
     for material in &mut setup.materials {
         match &mut material.model {
             Model::Fluid(fluid) => {
-                fluid.volume = FluidVolume::Gathered;
+                fluid.volume = VolumeRule::Gathered;
                 fluid.viscous_stress = ViscousStress::Engineering;
                 fluid.tension = 100.0;
             }
