@@ -71,13 +71,38 @@ fn a_start_is_replaced_from_the_command_line() {
     assert!(back.expected_particles() > 2000.0);
 }
 
+/// Its weight compresses what stands on the floor: there is more of it in its shape.
+const WITHOUT_PRESSURE: (&str, &str) = ("bodies.column.pressure", "none");
+
+/// A body that stands on the floor starts as its weight compresses it; one that moves or floats does not.
+#[test]
+fn what_stands_on_the_floor_starts_under_pressure() {
+    let most = |overrides: &[(&str, &str)]| {
+        let jacobian = column(&*build(&with(overrides)), Field::Jacobian);
+        jacobian.into_iter().fold(1.0_f64, f64::min)
+    };
+    assert!(most(&[]) < 1.0 - 1e-3);
+    assert_eq!(most(&[WITHOUT_PRESSURE]), 1.0);
+    assert_eq!(most(&[("bodies.column.velocity", "[1, 0]")]), 1.0);
+    let floating = "{ box = { min = [0.2, 0.3], max = [0.5, 0.8] } }";
+    assert_eq!(most(&[("bodies.column.shape", floating)]), 1.0);
+    assert_eq!(most(&[("domain.walls", "\"open\"")]), 1.0);
+    assert_eq!(most(&[("materials.water.volume", "\"jacobian\"")]), 1.0);
+    // The floor is where gravity points.
+    let leaning = "{ box = { min = [0.0, 0.3], max = [0.2, 0.8] } }";
+    let sideways = [("bodies.column.shape", leaning), ("gravity", "[-10, 0]")];
+    assert!(most(&sideways) < 1.0 - 1e-4);
+    let asked = ("bodies.column.pressure", "hydrostatic");
+    assert!(most(&[("bodies.column.shape", floating), asked]) < 1.0 - 1e-4);
+}
+
 /// Measured volumes: those of the surface are larger, those inside a lattice as given; masses stay.
 #[test]
 fn volumes_are_measured() {
     let lattice = ("bodies.column.sampling", "lattice");
     let measured = ("bodies.column.volume", "measured");
-    let mut plain = build(&with(&[lattice]));
-    let mut body = build(&with(&[lattice, measured]));
+    let mut plain = build(&with(&[lattice, WITHOUT_PRESSURE]));
+    let mut body = build(&with(&[lattice, measured, WITHOUT_PRESSURE]));
     let given = column(&*plain, Field::Volume0);
     let found = column(&*body, Field::Volume0);
     let (least, most) = found.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), v| {
@@ -166,6 +191,7 @@ fn spin_and_gradient_turn_about_the_centre_of_mass() {
         ("bodies.column.velocity", "[1, 3]"),
         ("precision", "f64"),
         ("bodies.column.sampling", "random"),
+        ("bodies.column.volume", "alike"),
     ]);
     let simulation = build(&scene);
     let (x, v) = (
@@ -185,7 +211,8 @@ fn spin_and_gradient_turn_about_the_centre_of_mass() {
 #[test]
 fn volumes_follow_the_shape_or_the_scene() {
     let total = |overrides: &[(&str, &str)]| {
-        column(&*build(&with(overrides)), Field::Volume0)
+        let overrides = [overrides, &[WITHOUT_PRESSURE]].concat();
+        column(&*build(&with(&overrides)), Field::Volume0)
             .iter()
             .sum::<f64>()
     };

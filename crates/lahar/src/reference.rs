@@ -292,7 +292,7 @@ impl<const D: usize> Reference<D> {
                 0.0
             }
         };
-        let answers: Grid<_, D> = nodes
+        let mut answers: Grid<_, D> = nodes
             .iter()
             .map(|(node, sums)| {
                 let mean = if sums[2] > 0.0 {
@@ -303,6 +303,15 @@ impl<const D: usize> Reference<D> {
                 (*node, (mean, excess(node, sums)))
             })
             .collect();
+        for wall in &self.walls.planes {
+            let nodes = nodes.keys().copied();
+            for node in nodes.filter(|node| node[wall.axis] + i64::from(wall.inward) == wall.node) {
+                let mut image = node;
+                image[wall.axis] += 2 * i64::from(wall.inward);
+                let excess = answers.get(&image).map_or(0.0, |answer| answer.1);
+                answers.entry(node).and_modify(|answer| answer.1 = excess);
+            }
+        }
         let mut particles = core::mem::take(&mut self.particles);
         for p in particles.iter_mut().filter(|p| p.material == material) {
             let (mut mean, mut excess) = (0.0, 0.0);

@@ -6,12 +6,13 @@ mod common;
 #[expect(dead_code, reason = "the method's checks use the rest")]
 mod engine;
 
-use common::{brawl, brawl_with_all_options};
+use common::{Random, ball, brawl, brawl_with_all_options};
 use engine::{Engine, Fast, Oracle, State};
 use lahar::Instance;
+use lahar::material::VolumeRule;
 use lahar::{
-    Contact, Domain, ForceForm, Isa, Kernel, ParticleBatch, Setup, Sides, Simulate, Simulation,
-    TimeStep, Transfer, WallStyle,
+    Contact, Domain, ForceForm, Isa, Kernel, Model, ParticleBatch, Setup, Sides, Simulate,
+    Simulation, TimeStep, Transfer, WallStyle,
 };
 
 /// What a field is measured by at the least, lest noise be compared with noise: a cell, a slow
@@ -263,4 +264,87 @@ fn a_value_that_is_no_number_stops_the_run_and_names_the_particle() {
     );
     // What is there can still be looked at.
     let _ = simulation.snapshot(&[lahar::Field::Position, lahar::Field::Velocity]);
+}
+
+/// Water that turns in a corner, with snow in it: its volume is set right several times, at walls, in
+/// the corner, at the free surface and beside the snow.
+fn corrected_volume<T: Instance<D>, const D: usize>(limit: f64) {
+    let (mut setup, mut batches) = brawl::<D>(16);
+    setup.time_step = TimeStep::Fixed(1e-3);
+    let size = setup.dx * 16.0;
+    let mut random = Random(3);
+    let water = ball(
+        0,
+        [0.3 * size; D],
+        0.4 * size,
+        setup.dx,
+        [0.0; D],
+        &mut random,
+    );
+    let inside = |x: &[f64; D]| x.iter().all(|x| *x > 0.0);
+    let position: Vec<[f64; D]> = water.position.into_iter().filter(inside).collect();
+    let turning = |x: &[f64; D]| {
+        let mut velocity = [0.0; D];
+        (velocity[0], velocity[1]) = (-6.0 * (x[1] - 0.3 * size), 2.0 * (x[0] - 0.3 * size));
+        velocity
+    };
+    batches[0] = ParticleBatch {
+        velocity: position.iter().map(turning).collect(),
+        position,
+        volume: water.volume,
+        ..ParticleBatch::default()
+    };
+    batches[3] = ball(
+        3,
+        [0.35 * size; D],
+        0.1 * size,
+        setup.dx,
+        [0.0; D],
+        &mut random,
+    );
+    let batches = [batches[0].clone(), batches[3].clone()];
+    let plain = |setup: &Setup<D>| {
+        let mut plain = setup.clone();
+        if let Model::Fluid(fluid) = &mut plain.materials[0].model {
+            fluid.volume = VolumeRule::Jacobian;
+        }
+        plain
+    };
+    for kernel in [Kernel::Quadratic, Kernel::Cubic] {
+        for transfer in [Transfer::Apic, Transfer::Flip { blend: 0.95 }] {
+            (setup.kernel, setup.transfer) = (kernel, transfer);
+            let steps = 70;
+            let difference = compare::<T, D>(&setup, &batches, steps);
+            assert!(
+                difference < limit,
+                "{kernel:?} {transfer:?}: {difference:e}"
+            );
+            let mut corrected = Fast::<T, D>::new(&setup, &batches);
+            let mut left_alone = Fast::<T, D>::new(&plain(&setup), &batches);
+            for _ in 0..steps {
+                corrected.substep();
+                left_alone.substep();
+            }
+            let effect = worst(&corrected.particles(), &left_alone.particles());
+            assert!(
+                effect > 100.0 * limit,
+                "the correction must be seen: {effect:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn corrected_volume_2d_f64() {
+    corrected_volume::<f64, 2>(1e-8);
+}
+
+#[test]
+fn corrected_volume_2d_f32() {
+    corrected_volume::<f32, 2>(1e-3);
+}
+
+#[test]
+fn corrected_volume_3d_f64() {
+    corrected_volume::<f64, 3>(1e-8);
 }

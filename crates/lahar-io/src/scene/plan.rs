@@ -820,17 +820,14 @@ fn read_fluid(table: &Reader<'_>) -> Result<(Fluid, Stiffness), SceneError> {
     Ok((fluid, stiffness))
 }
 
-/// Rates of volume = "corrected", by the table of cases in docs/validation.md.
-const SMOOTHING: f64 = 5.0;
-const CORRECTION: f64 = 3.0;
-
 fn read_volume_rule(table: &Reader<'_>) -> Result<VolumeRule, SceneError> {
     let rates = ["volume_smoothing", "volume_correction"];
     let rule = match table.text("volume")? {
         "corrected" => {
+            let usual = VolumeCorrection::default();
             return Ok(VolumeRule::Corrected(VolumeCorrection {
-                smoothing: table.opt_number(rates[0]).unwrap_or(SMOOTHING),
-                correction: table.opt_number(rates[1]).unwrap_or(CORRECTION),
+                smoothing: table.opt_number(rates[0]).unwrap_or(usual.smoothing),
+                correction: table.opt_number(rates[1]).unwrap_or(usual.correction),
             }));
         }
         "gathered" => VolumeRule::Gathered,

@@ -104,9 +104,11 @@ impl<const D: usize> Columns<D> {
 impl<const D: usize> Columns<D> {
     /// Adds to the volumes that nodes near walls hold those of the mirror images.
     pub(super) fn mirror_volumes<T: Lanes>(&self, nodes: &mut [T], planes: usize) {
-        for columns in &self.0 {
+        for columns in &self.walls {
             for places in columns {
-                let at = places.map(|place| place.map(|place| quad_at(place, planes)));
+                let at = places
+                    .across
+                    .map(|place| place.map(|place| quad_at(place, planes)));
                 for lane in 0..QUAD {
                     let read = |at: Option<usize>| at.map_or(T::default(), |at| nodes[at + lane]);
                     let [beyond, plane, inside] = at.map(read);
@@ -117,6 +119,18 @@ impl<const D: usize> Columns<D> {
                         }
                     }
                 }
+            }
+        }
+    }
+}
+
+impl<const D: usize> Columns<D> {
+    /// Gives the nodes beyond walls number `lane` of the quads of their images.
+    pub(super) fn mirror_answers<T: Lanes>(&self, nodes: &mut [T], planes: usize, lane: usize) {
+        for places in self.walls.iter().flatten() {
+            let [beyond, _, inside] = places.across;
+            if let (Some(beyond), Some(inside)) = (beyond, inside) {
+                nodes[quad_at(beyond, planes) + lane] = nodes[quad_at(inside, planes) + lane];
             }
         }
     }

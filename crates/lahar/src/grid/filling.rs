@@ -44,7 +44,14 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             }
         });
         self.excess = excess;
+        let apart = self.excess_without_tiles(walls, cell);
         self.answer();
+        for (place, excess) in apart {
+            self.nodes[place + EXCESS] = excess;
+        }
+        // Nodes beyond walls answer as their images do.
+        self.columns
+            .mirror_answers(&mut self.nodes, self.planes, EXCESS);
     }
 
     /// The excess on the nodes of tile number `index`'s own block.
@@ -52,7 +59,6 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         let edge = block_edge(D) as i64;
         let first = self.tile_blocks[index].map(|block| i64::from(block) * edge);
         let tile_edge = self.tile_edge as i64;
-        let (one, full) = (T::from_f64(1.0), cell * T::from_f64(OUTSIDE));
         // A tile begins one node before its block.
         let quad_of = |node: [i64; D]| {
             let at = (0..D).fold(0, |at, axis| {
@@ -63,16 +69,45 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         for (local, out) in out.iter_mut().enumerate() {
             let node =
                 core::array::from_fn(|axis| first[axis] + axis_index::<D>(local, axis) as i64);
-            let volumes = quad_of(node);
-            let inside = volumes[0] >= full
-                && neighbours(node)
-                    .all(|beside| walls.is_behind_plane(beside) || quad_of(beside)[0] >= full);
-            *out = if inside {
-                (volumes[0] + volumes[1]) / cell - one // (7i)
-            } else {
-                T::default()
-            };
+            *out = excess_at(node, walls, cell, |node| Some(quad_of(node)));
         }
+    }
+
+    /// The excess on the nodes of blocks that no particle is in, where it is not zero: by the place of
+    /// the node's quad. Few nodes there are full.
+    fn excess_without_tiles(&self, walls: &Walls<D>, cell: T) -> Vec<(usize, T)> {
+        let edge = block_edge(D) as i64;
+        let full = cell * T::from_f64(OUTSIDE);
+        let mut found = Vec::new();
+        for (block, coordinates) in self.blocks.iter().enumerate() {
+            if self.tile_blocks.binary_search(coordinates).is_ok() {
+                continue;
+            }
+            for local in 0..BLOCK_NODES {
+                let place = block * self.block_len() + local * QUAD;
+                if self.nodes[place] >= full {
+                    let node = core::array::from_fn(|axis| {
+                        i64::from(coordinates[axis]) * edge + axis_index::<D>(local, axis) as i64
+                    });
+                    let excess = excess_at(node, walls, cell, |node| {
+                        Some(&self.nodes[self.quad_of_node(walls.canonical(node))?..][..QUAD])
+                    });
+                    found.push((place, excess));
+                }
+            }
+        }
+        found
+    }
+
+    /// Where the quad of a node is, if there is that node.
+    fn quad_of_node(&self, node: [i64; D]) -> Option<usize> {
+        let edge = block_edge(D) as i64;
+        let block = node.map(|index| index.div_euclid(edge) as i32);
+        let local = node
+            .iter()
+            .fold(0, |at, index| at * edge + index.rem_euclid(edge));
+        let block = self.blocks.binary_search(&block).ok()?;
+        Some(block * self.block_len() + local as usize * QUAD)
     }
 
     /// Replaces the nodes' quads by their answers.
@@ -93,15 +128,33 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             let quads = nodes[..BLOCK_NODES * QUAD].chunks_exact_mut(QUAD);
             for (local, quad) in quads.enumerate() {
                 let mean = if quad[2] > zero {
-                    quad[3] / quad[2]
+                    quad[3] / quad[2] // (7h)
                 } else {
                     zero
-                }; // (7h)
+                };
                 quad.fill(zero);
                 quad[MEAN] = mean;
                 quad[EXCESS] = excess.map_or(zero, |excess| excess[local]);
             }
         }
+    }
+}
+
+/// The excess at `node`; `quad_of` says what volumes a node has, if there is that node.
+fn excess_at<'a, T: Lanes, const D: usize>(
+    node: [i64; D],
+    walls: &Walls<D>,
+    cell: T,
+    quad_of: impl Fn([i64; D]) -> Option<&'a [T]>,
+) -> T {
+    let full = cell * T::from_f64(OUTSIDE);
+    let is_full = |node| quad_of(node).is_some_and(|quad| quad[0] >= full);
+    let inside = !walls.is_behind_plane(node)
+        && is_full(node)
+        && neighbours(node).all(|beside| walls.is_behind_plane(beside) || is_full(beside));
+    match quad_of(node) {
+        Some(volumes) if inside => (volumes[0] + volumes[1]) / cell - T::from_f64(1.0), // (7i)
+        _ => T::default(),
     }
 }
 

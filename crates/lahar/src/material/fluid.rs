@@ -3,7 +3,7 @@
 //! The pressure is computed from e = J − 1, which is what is stored. A fluid at rest lives at
 //! |e| ≈ 10⁻⁵, where J^−γ − 1 formed from J has lost half the digits of an `f32`.
 
-use super::{ConstitutiveModel, Dilatation, VolumeRule};
+use super::{ConstitutiveModel, Dilatation, VolumeCorrection, VolumeRule};
 use crate::math::near_one::{minus_ln_1p, power_minus_one};
 use crate::math::{Matrix, Real, Scalar};
 
@@ -81,7 +81,8 @@ pub enum ViscousStress {
 }
 
 impl Fluid {
-    /// Water's equation of state (Tait, γ = 7) and viscosity (1.002 mPa s at 20 °C), no tension.
+    /// Water's equation of state (Tait, γ = 7) and viscosity (1.002 mPa s at 20 °C), no tension,
+    /// corrected volume.
     ///
     /// `density` \[kg/m³\] and the `sound_speed` to simulate with \[m/s\]: ten times the largest
     /// speed of the flow keeps the change of density near 1 % (Monaghan 1994); real water's
@@ -90,6 +91,7 @@ impl Fluid {
         Self {
             eos: Eos::Tait { gamma: 7.0 },
             viscosity: 1.002e-3,
+            volume: VolumeRule::Corrected(VolumeCorrection::default()),
             ..Self::inviscid(density * sound_speed * sound_speed)
         }
     }

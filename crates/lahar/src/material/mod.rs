@@ -88,6 +88,16 @@ pub struct VolumeCorrection {
     pub correction: f64,
 }
 
+impl Default for VolumeCorrection {
+    /// Anything from half to ten times as much keeps a slosh's volume as well.
+    fn default() -> Self {
+        Self {
+            smoothing: 5.0,
+            correction: 3.0,
+        }
+    }
+}
+
 /// A scene's named choice of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {

@@ -1,8 +1,8 @@
 //! Scenes that several tests run.
 
 use lahar::material::{
-    Corotated, Dust, Eos, Fluid, HardeningFrom, NeoHookean, Snow, ViscousStress, VolumeCorrection, VolumeRule,
-    lame,
+    Corotated, Dust, Eos, Fluid, HardeningFrom, NeoHookean, Snow, ViscousStress, VolumeCorrection,
+    VolumeRule, lame,
 };
 use lahar::particles::{Data, Field, Snapshot};
 use lahar::{
@@ -42,10 +42,7 @@ pub(crate) fn one_of_each() -> Vec<Material> {
                 eos: Eos::Tait { gamma: 7.0 },
                 viscosity: 0.5,
                 bulk_viscosity: 0.1,
-                volume: VolumeRule::Corrected(VolumeCorrection {
-                    smoothing: 5.0,
-                    correction: 3.0,
-                }),
+                volume: VolumeRule::Corrected(VolumeCorrection::default()),
                 ..Fluid::inviscid(1000.0 * 5.0 * 5.0)
             }),
         ),
