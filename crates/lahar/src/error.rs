@@ -20,8 +20,8 @@ impl fmt::Display for SetupError {
 impl core::error::Error for SetupError {}
 
 /// A run that cannot go on: a particle that is not a number, or has left what positions can say.
-/// The state is that before the failed substep's particles were moved between blocks; outputs
-/// written before are untouched.
+/// The simulation cannot go on from there: [`Simulate::retry_frame`](crate::Simulate::retry_frame) goes
+/// back to the start of the frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
     /// What happened.
@@ -83,6 +83,8 @@ pub enum DtLimit {
     Viscosity,
     /// The scene's longest substep.
     Longest,
+    /// A frame is tried again with less than any of these allow, or one was shortly before.
+    Retry,
     /// The frame ends.
     #[default]
     Frame,
@@ -97,6 +99,7 @@ impl DtLimit {
             Self::Speed => "speed",
             Self::Viscosity => "viscosity",
             Self::Longest => "longest",
+            Self::Retry => "retry",
             Self::Frame => "frame",
         }
     }

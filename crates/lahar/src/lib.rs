@@ -15,10 +15,12 @@ mod parallel;
 pub mod particles;
 pub mod probe;
 pub mod reference;
+mod retry;
 pub mod setup;
 pub mod simulation;
 mod snapshot;
 mod sort;
+mod state;
 mod step;
 mod store;
 mod transfer;
@@ -31,6 +33,7 @@ pub use instance::Instance;
 pub use material::{Material, Model};
 pub use particles::{Data, Field, Snapshot};
 pub use probe::{Gauge, Plate, Probe, ProbeSample, ProbeSamples};
+pub use retry::{Retry, frame};
 pub use setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
 pub use simulation::{
     Advance, Command, Memory, PhaseTimes, Pointer, PointerAction, Simulate, Simulation,

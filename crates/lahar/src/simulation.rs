@@ -17,6 +17,7 @@ use crate::material::{IsaToken, Law, VolumeCorrection};
 use crate::math::Vector;
 use crate::particles::{Field, Snapshot};
 use crate::probe::{self, ProbeSamples, Readings};
+use crate::retry::{Mark, Retry};
 use crate::setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
 use crate::sort::{DRIFT_LIMIT, Escaped, Sorter, in_range};
 use crate::step::StepControl;
@@ -118,13 +119,20 @@ pub trait Simulate: Send {
     fn particle_count(&self) -> usize;
     /// Length that the next substep would have \[s\], and why.
     fn next_dt(&self) -> (f64, DtLimit);
-    /// One substep.
+    /// One substep. If the scene fixes its length and a frame is tried again with a part of it, as many
+    /// as make it.
     fn substep(&mut self) -> Result<Advance, Failure>;
     /// Substeps until `time` \[s\]: exactly with an automatic time step, to the nearest substep with
     /// a fixed one.
     fn advance_to(&mut self, time: f64) -> Result<Advance, Failure>;
     /// Takes effect at the next substep.
     fn command(&mut self, command: Command);
+    /// Keeps a copy of the state, which [`Self::retry_frame`] goes back to. A time step that was shortened
+    /// before recovers by and by. [`crate::frame`] does both.
+    fn begin_frame(&mut self);
+    /// Goes back to where [`Self::begin_frame`] was called, to go on with half the time step of the last
+    /// attempt; commands given since stay. `None` if that was never called, or has been tried to 1/64.
+    fn retry_frame(&mut self, failure: &Failure) -> Option<Retry>;
     /// A copy of `fields`, rows by ascending id.
     fn snapshot(&self, fields: &[Field]) -> Snapshot;
     /// Totals now. Sorts first if the next substep would: the run's bits do not change.
@@ -154,6 +162,8 @@ pub struct Memory {
     pub grid_bytes: usize,
     /// Bytes of particles, buffers included.
     pub particle_bytes: usize,
+    /// Bytes of the copy that a frame that fails begins again from; 0 before the first frame.
+    pub retry_bytes: usize,
 }
 
 /// A simulation in `D` dimensions with numbers of type `T`.
@@ -179,23 +189,25 @@ pub struct Simulation<T: Instance<D>, const D: usize> {
     pub(crate) isa: IsaToken,
     pub(crate) grid: Grid<T, D>,
     pub(crate) groups: Vec<Group<T, D>>,
-    sorter: Sorter<T, D>,
+    pub(crate) sorter: Sorter<T, D>,
     /// Cells that particles may have moved since they were sorted.
-    drift: f64,
+    pub(crate) drift: f64,
     /// Time since the fluids' volumes were last set right \[s\].
-    uncorrected: f64,
-    pointer: Option<Pointer>,
+    pub(crate) uncorrected: f64,
+    pub(crate) pointer: Option<Pointer>,
     /// By the number of the domain's side, what it has taken since the start; lengths in metres.
-    taken: Vec<Taken<D>>,
+    pub(crate) taken: Vec<Taken<D>>,
     pub(crate) escaped: Escaped,
     pub(crate) control: StepControl,
     /// Where each particle started \[m\], by id, if a force asks for it.
-    starts: Option<Vec<[f64; D]>>,
-    next_id: u32,
+    pub(crate) starts: Option<Vec<[f64; D]>>,
+    pub(crate) next_id: u32,
     /// What each probe has read.
     pub(crate) readings: Vec<Readings>,
-    clock: Option<fn() -> f64>,
-    times: PhaseTimes,
+    /// Where a frame that fails begins again.
+    pub(crate) mark: Option<Mark<T, D>>,
+    pub(crate) clock: Option<fn() -> f64>,
+    pub(crate) times: PhaseTimes,
 }
 
 pub(crate) fn three<const D: usize>(a: [f64; D]) -> [f64; 3] {
@@ -270,6 +282,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                 .then(Vec::new),
             next_id: 0,
             readings: vec![Readings::default(); setup.probes.len()],
+            mark: None,
             clock: None,
             times: PhaseTimes::default(),
             setup,
@@ -698,8 +711,8 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             }
         }
         self.times.gather += self.now() - start;
-        if let Some((material, row, count)) = failure {
-            return Err(self.failure(material, row, count, dt, limit));
+        if let Some(found) = failure {
+            return Err(self.failure(found, dt, limit));
         }
         self.drift += moved;
         self.control.speed = speed_squared.sqrt();
@@ -719,23 +732,36 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         })
     }
 
+    /// What there is to say of the particles that failed: material, first row, count.
     fn failure(
         &self,
-        material: usize,
-        row: usize,
-        count: u64,
+        (material, row, count): (usize, usize, u64),
         dt: f64,
         dt_limit: DtLimit,
     ) -> Failure {
         let group = &self.groups[material];
+        // A law says of a chunk only that something in it is wrong.
+        let is_bad = |&row: &usize| {
+            let mut numbers = group.columns.iter().map(|column| column[row].to_f64());
+            !numbers.all(f64::is_finite)
+        };
+        let bad = (row..group.len()).find(is_bad);
+        let row = bad.unwrap_or(row);
         let run = group
             .runs
             .iter()
             .find(|run| run.rows().contains(&row))
             .expect("every row is in a run");
         let position = self.position(group, run.block, row);
+        let what = if bad.is_some() {
+            "a particle's motion or strain is no longer a finite number"
+        } else if in_range(run.block) {
+            "a particle has jumped by more than a million cells"
+        } else {
+            "a particle is too far from the origin to be placed"
+        };
         Failure {
-            what: "a particle's motion or strain is no longer a finite number".into(),
+            what: what.into(),
             particle: group.id[row],
             material: self.setup.materials[material].name.clone(),
             body: group.body.get(row),
@@ -959,9 +985,12 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
         let (dt, limit) = self.control.next();
         // Dust at rest without gravity has no time scale at all.
         let dt = if dt.is_finite() { dt } else { 1.0 };
-        self.substep_of(dt, limit)?;
+        let substeps = self.control.per_fixed();
+        for _ in 0..substeps {
+            self.substep_of(dt, limit)?;
+        }
         Ok(Advance {
-            substeps: 1,
+            substeps,
             dt_min: dt,
             limit,
         })
@@ -992,6 +1021,14 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
             }
             Command::Pointer(pointer) => self.pointer = pointer,
         }
+    }
+
+    fn begin_frame(&mut self) {
+        self.begin();
+    }
+
+    fn retry_frame(&mut self, failure: &Failure) -> Option<Retry> {
+        self.begin_again(failure)
     }
 
     fn snapshot(&self, fields: &[Field]) -> Snapshot {
@@ -1033,6 +1070,7 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
             grid_bytes: self.grid.bytes(),
             particle_bytes: self.groups.iter().map(Group::bytes).sum::<usize>()
                 + self.sorter.bytes(),
+            retry_bytes: self.mark.as_ref().map_or(0, |mark| mark.state.bytes()),
         }
     }
 }

@@ -6,6 +6,9 @@ use crate::setup::TimeStep;
 /// Part of the explicit limit dx²/(2 d ν) that viscosity is given.
 const VISCOUS_SAFETY: f64 = 0.5;
 
+/// Frames that a shortened step must do, the one that asked for it included, before it is doubled.
+const CLEAN_FRAMES: u32 = 4;
+
 /// Substeps left to a moment that are still evened out, so that the last is not a splinter.
 const EVEN_OUT: f64 = 2.0;
 
@@ -28,6 +31,12 @@ pub(crate) struct StepControl {
     pub(crate) substeps: u64,
     time: f64,
     shortest: (f64, DtLimit),
+    /// The part of the usual substep that is taken, since a frame had to be tried again; 1 else.
+    part: f64,
+    /// Frames done at this part.
+    clean_frames: u32,
+    /// With a fixed step: the time at which the part changed, and the substeps then.
+    changed: (f64, u64),
 }
 
 impl StepControl {
@@ -43,6 +52,9 @@ impl StepControl {
             substeps: 0,
             time: 0.0,
             shortest: (f64::INFINITY, DtLimit::Frame),
+            part: 1.0,
+            clean_frames: 0,
+            changed: (0.0, 0),
         }
     }
 
@@ -50,13 +62,55 @@ impl StepControl {
     pub(crate) fn time(&self) -> f64 {
         match self.step {
             // Not a sum: after a million steps a sum of rounded steps is off by many roundings.
-            TimeStep::Fixed(dt) => self.substeps as f64 * dt,
+            TimeStep::Fixed(dt) => {
+                self.changed.0 + (self.substeps - self.changed.1) as f64 * (dt * self.part)
+            }
             TimeStep::Automatic { .. } => self.time,
         }
     }
 
     /// The next substep if nothing but the state limits it.
     pub(crate) fn next(&self) -> (f64, DtLimit) {
+        let (dt, limit) = self.usual();
+        if self.part < 1.0 {
+            (dt * self.part, DtLimit::Retry)
+        } else {
+            (dt, limit)
+        }
+    }
+
+    /// How many substeps make one that the scene fixes the length of.
+    pub(crate) fn per_fixed(&self) -> u64 {
+        match self.step {
+            TimeStep::Fixed(_) => (1.0 / self.part) as u64, // a power of two
+            TimeStep::Automatic { .. } => 1,
+        }
+    }
+
+    /// A frame is done and the next begins: a shortened step slowly recovers.
+    pub(crate) fn frame_begins(&mut self) {
+        if self.part < 1.0 {
+            self.clean_frames += 1;
+            if self.clean_frames >= CLEAN_FRAMES {
+                self.take_part(2.0 * self.part);
+            }
+        }
+    }
+
+    /// Halves the step, `halvings` times; returns what part of the usual it is now.
+    pub(crate) fn shorten(&mut self, halvings: u32) -> f64 {
+        self.take_part(self.part * 0.5_f64.powi(halvings as i32));
+        self.part
+    }
+
+    fn take_part(&mut self, part: f64) {
+        self.changed = (self.time(), self.substeps);
+        self.part = part;
+        self.clean_frames = 0;
+    }
+
+    /// The next substep without regard to retries.
+    fn usual(&self) -> (f64, DtLimit) {
         let (cfl, longest) = match self.step {
             TimeStep::Fixed(dt) => return (dt, DtLimit::Fixed),
             TimeStep::Automatic { cfl, longest } => (cfl, longest),
@@ -83,7 +137,7 @@ impl StepControl {
     pub(crate) fn towards(&self, time: f64) -> Option<(f64, DtLimit)> {
         let left = time - self.time();
         let (dt, limit) = self.next();
-        if limit == DtLimit::Fixed {
+        if matches!(self.step, TimeStep::Fixed(_)) {
             return (left > 0.5 * dt).then_some((dt, limit));
         }
         if left <= f64::EPSILON * time.abs() {

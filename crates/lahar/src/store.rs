@@ -39,6 +39,14 @@ impl<T: Copy + PartialEq> PerParticle<T> {
         }
     }
 
+    /// Numbers that there is room for, one a particle.
+    pub(crate) fn each(&self) -> usize {
+        match self {
+            Self::Uniform(_) => 0,
+            Self::Each(values) => values.capacity(),
+        }
+    }
+
     /// Adds `more` behind the `count` numbers that are there.
     pub(crate) fn extend(&mut self, count: usize, more: &[T]) {
         if let Self::Uniform(value) = *self {
@@ -138,25 +146,9 @@ impl<T: Lanes, const D: usize> Group<T, D> {
     /// Bytes held, spare capacity included.
     pub(crate) fn bytes(&self) -> usize {
         let real = size_of::<T>();
-        let each = |p: &PerParticle<T>| {
-            if let PerParticle::Each(v) = p {
-                v.capacity() * real
-            } else {
-                0
-            }
-        };
-        self.columns
-            .iter()
-            .map(|c| c.capacity() * real)
-            .sum::<usize>()
-            + each(&self.mass)
-            + each(&self.volume0)
-            + self.id.capacity() * 4
-            + if let PerParticle::Each(v) = &self.body {
-                v.capacity() * 4
-            } else {
-                0
-            }
+        let columns = self.columns.iter().map(Vec::capacity).sum::<usize>();
+        real * (columns + self.mass.each() + self.volume0.each())
+            + size_of::<u32>() * (self.id.capacity() + self.body.each())
     }
 
     /// Position of row `row` of a block, in cells from the origin; `offset` is the kernel's.

@@ -10,6 +10,7 @@ use crate::material::{CHUNK, IsaToken, load_part, store_part};
 use crate::math::{Lanes, Mask, Matrix, Real, Vector};
 use crate::parallel;
 use crate::setup::Transfer;
+use crate::sort::in_range;
 use crate::store::{ColumnsMut, Group, Layout, Run, block_edge};
 use fearless_simd::Simd;
 
@@ -152,6 +153,11 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
             } else if found.failed.is_none() {
                 found.failed = Some(start);
                 found.failures = 1;
+            }
+            if !in_range(run.block) {
+                // One more move can still be told from where it is, two may not.
+                found.failed = Some(start);
+                found.failures = count as u64;
             }
             found.failed = found.failed.map(|local| local + first_row);
             bounds = bounds.and(found);

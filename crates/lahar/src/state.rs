@@ -1,0 +1,142 @@
+//! All that decides how a simulation goes on, besides its setup: what is kept to go back to.
+//!
+//! ```text
+//! Simulation ──save──▶ State ──restore──▶ Simulation
+//!   grid, tiles, buffers: not kept, since they follow from where the runs are
+//! ```
+
+use crate::boundary::impulse::Taken;
+use crate::instance::Instance;
+use crate::math::Lanes;
+use crate::probe::Readings;
+use crate::simulation::{Pointer, Simulation};
+use crate::sort::Escaped;
+use crate::step::StepControl;
+use crate::store::{Group, PerParticle, Run};
+
+/// The state between two substeps. Rows are kept in their order and sorted as long ago as they are:
+/// what follows has the same bits.
+pub(crate) struct State<T, const D: usize> {
+    groups: Vec<Rows<T, D>>,
+    drift: f64,
+    taken: Vec<Taken<D>>,
+    readings: Vec<Readings>,
+    escaped: Escaped,
+    control: StepControl,
+    next_id: u32,
+    gravity: [f64; D],
+    pointer: Option<Pointer>,
+}
+
+/// The particles of a group.
+struct Rows<T, const D: usize> {
+    columns: Vec<Vec<T>>,
+    mass: PerParticle<T>,
+    volume0: PerParticle<T>,
+    id: Vec<u32>,
+    body: PerParticle<u32>,
+    runs: Vec<Run<D>>,
+}
+
+impl<T: Lanes, const D: usize> State<T, D> {
+    /// What the next copy takes, and what it has taken \[bytes\].
+    pub(crate) fn bytes(&self) -> usize {
+        let rows = |rows: &Rows<T, D>| {
+            let columns = rows.columns.iter().map(Vec::capacity).sum::<usize>();
+            size_of::<T>() * (columns + rows.mass.each() + rows.volume0.each())
+                + size_of::<u32>() * (rows.id.capacity() + rows.body.each())
+                + size_of::<Run<D>>() * rows.runs.capacity()
+        };
+        self.groups.iter().map(rows).sum()
+    }
+}
+
+impl<T: Instance<D>, const D: usize> Simulation<T, D> {
+    /// A copy of the state, in the memory of `old` if there is one.
+    pub(crate) fn save(&self, old: Option<State<T, D>>) -> State<T, D> {
+        // By name, so that a new field asks whether it belongs to the state.
+        let Self {
+            groups: now,
+            drift,
+            taken,
+            readings,
+            escaped,
+            control,
+            next_id,
+            pointer,
+            setup,
+            starts: _, // only grows: the ids say how far
+            grid: _,   // follows from the runs
+            walls: _,
+            origin: _,
+            scheme: _,
+            isa: _,
+            sorter: _,
+            mark: _,
+            clock: _,
+            times: _,
+        } = self;
+        let mut groups = old.map_or_else(Vec::new, |old| old.groups);
+        groups.resize_with(now.len(), || Rows {
+            columns: Vec::new(),
+            mass: PerParticle::Uniform(T::default()),
+            volume0: PerParticle::Uniform(T::default()),
+            id: Vec::new(),
+            body: PerParticle::Uniform(0),
+            runs: Vec::new(),
+        });
+        for (rows, group) in groups.iter_mut().zip(now) {
+            rows.columns.clone_from(&group.columns);
+            rows.mass.clone_from(&group.mass);
+            rows.volume0.clone_from(&group.volume0);
+            rows.id.clone_from(&group.id);
+            rows.body.clone_from(&group.body);
+            rows.runs.clone_from(&group.runs);
+        }
+        State {
+            groups,
+            drift: *drift,
+            taken: taken.clone(),
+            readings: readings.clone(),
+            escaped: *escaped,
+            control: control.clone(),
+            next_id: *next_id,
+            gravity: setup.gravity,
+            pointer: *pointer,
+        }
+    }
+
+    /// Goes back to `state`, which this simulation has had.
+    pub(crate) fn restore(&mut self, state: &State<T, D>) {
+        for (group, rows) in self.groups.iter_mut().zip(&state.groups) {
+            let Group {
+                law: _,
+                density: _,
+                columns,
+                mass,
+                volume0,
+                id,
+                body,
+                runs,
+            } = group;
+            columns.clone_from(&rows.columns);
+            mass.clone_from(&rows.mass);
+            volume0.clone_from(&rows.volume0);
+            id.clone_from(&rows.id);
+            body.clone_from(&rows.body);
+            runs.clone_from(&rows.runs);
+        }
+        self.drift = state.drift;
+        self.taken.clone_from(&state.taken);
+        self.readings.clone_from(&state.readings);
+        self.escaped = state.escaped;
+        self.control = state.control.clone();
+        self.next_id = state.next_id;
+        self.setup.gravity = state.gravity;
+        self.pointer = state.pointer;
+        if let Some(starts) = &mut self.starts {
+            starts.truncate(state.next_id as usize); // ids are given in order
+        }
+        self.grid.rebuild(&mut self.groups, &self.walls);
+    }
+}

@@ -1,0 +1,315 @@
+//! Frames that fail begin again with half the time step: what failed, what is tried, what is left.
+
+#[expect(dead_code, reason = "other tests use the rest")]
+mod common;
+
+use common::{ALL, bits, brawl};
+use lahar::material::{Corotated, Dust, Fluid, lame};
+use lahar::{
+    AccelerationField, Command, DtLimit, Failure, Force, Instance, Material, Model, ParticleBatch,
+    Pointer, PointerAction, Retry, Setup, Simulate, Simulation, TimeStep, frame,
+};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A ball of jelly thrown at a wall, with a fixed step.
+fn stiff_brawl<const D: usize>(dt: f64) -> (Setup<D>, Vec<ParticleBatch<D>>) {
+    let (mut setup, mut batches) = brawl::<D>(16);
+    batches.retain(|batch| batch.material == 1);
+    let (lambda, mu) = lame(2e4, 0.3);
+    setup.materials[1].model = Model::Corotated(Corotated { lambda, mu });
+    setup.time_step = TimeStep::Fixed(dt);
+    (setup, batches)
+}
+
+const TOO_LONG: f64 = 8e-3;
+const FRAME: f64 = 64.0 * TOO_LONG;
+
+/// The bits after each frame, and what was told.
+fn frames<T: Instance<D>, const D: usize>(
+    threads: usize,
+    (setup, batches): &(Setup<D>, Vec<ParticleBatch<D>>),
+    count: usize,
+) -> (Vec<Vec<u64>>, Vec<Retry>) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build().expect("a pool").install(|| {
+        let mut simulation = Simulation::<T, D>::new(setup.clone(), batches).expect("sound");
+        let (mut all, mut retries) = (Vec::new(), Vec::new());
+        for k in 1..=count {
+            let end = k as f64 * FRAME;
+            frame(
+                &mut simulation,
+                |simulation| simulation.advance_to(end),
+                |retry| retries.push(retry.clone()),
+            )
+            .expect("a shorter step helps");
+            all.push(bits(&simulation.snapshot(ALL)));
+        }
+        (all, retries)
+    })
+}
+
+/// The frame that is tried again is to the bit what it would have been with the shorter step at
+/// first, on any number of threads.
+fn a_retried_frame_is_a_frame_of_the_shorter_step<T: Instance<D>, const D: usize>() {
+    let (retried, retries) = frames::<T, D>(1, &stiff_brawl(TOO_LONG), 2);
+    let first = &retries[0];
+    assert_eq!((first.time, first.part), (0.0, 0.5));
+    assert_eq!(first.failure.material, "jelly");
+    assert_eq!(first.failure.dt_limit, DtLimit::Fixed);
+    assert!((1..=64).contains(&first.failure.substep), "{first}");
+    let of_first = retries.iter().filter(|retry| retry.time == 0.0);
+    let part = of_first.last().expect("there was one").part;
+    let (direct, none) = frames::<T, D>(1, &stiff_brawl(TOO_LONG * part), 1);
+    assert_eq!(none, []);
+    assert!(direct[0] == retried[0], "{part}");
+    for threads in [2, 3] {
+        let (others, told) = frames::<T, D>(threads, &stiff_brawl(TOO_LONG), 2);
+        assert_eq!(told, retries);
+        assert!(others == retried, "{threads} threads");
+    }
+}
+
+#[test]
+fn a_retried_frame_is_a_frame_of_the_shorter_step_2d() {
+    a_retried_frame_is_a_frame_of_the_shorter_step::<f32, 2>();
+    a_retried_frame_is_a_frame_of_the_shorter_step::<f64, 2>();
+}
+
+#[test]
+fn a_retried_frame_is_a_frame_of_the_shorter_step_3d() {
+    a_retried_frame_is_a_frame_of_the_shorter_step::<f32, 3>();
+    a_retried_frame_is_a_frame_of_the_shorter_step::<f64, 3>();
+}
+
+/// An acceleration that is not a number while armed, from 0.1 s on.
+#[derive(Debug, Default)]
+struct Fault(AtomicBool);
+
+impl<const D: usize> AccelerationField<D> for Fault {
+    fn accelerations(&self, time: f64, _: &[[f64; D]], _: &[[f64; D]], out: &mut [[f64; D]]) {
+        let fails = self.0.load(Ordering::Relaxed) && time >= 0.1;
+        out.fill([if fails { f64::NAN } else { 0.0 }; D]);
+    }
+}
+
+/// The brawl with a fault that goes away when the frame has been tried again `faults` times.
+struct Faulty<const D: usize>
+where
+    f32: Instance<D>,
+{
+    fault: Arc<Fault>,
+    simulation: Simulation<f32, D>,
+}
+
+impl<const D: usize> Faulty<D>
+where
+    f32: Instance<D>,
+{
+    fn new() -> Self {
+        let fault = Arc::new(Fault::default());
+        let (mut setup, batches) = brawl::<D>(16);
+        setup.forces = vec![Force::Field(fault.clone())];
+        Self {
+            fault,
+            simulation: Simulation::new(setup, &batches).unwrap(),
+        }
+    }
+
+    /// One frame of 0.02 s with `faults`; what was told, and how the last substeps were limited.
+    fn frame(&mut self, number: u32, faults: usize) -> (Result<DtLimit, Failure>, Vec<Retry>) {
+        self.fault.0.store(faults > 0, Ordering::Relaxed);
+        let mut told = Vec::new();
+        let end = f64::from(number) * 0.02;
+        let done = frame(
+            &mut self.simulation,
+            |simulation| simulation.advance_to(end),
+            |retry: &Retry| {
+                told.push(retry.clone());
+                self.fault.0.store(told.len() < faults, Ordering::Relaxed);
+            },
+        );
+        (done.map(|advance| advance.limit), told)
+    }
+}
+
+/// Doubled after four good frames, until it is what it was.
+#[test]
+fn the_time_step_recovers() {
+    let mut faulty = Faulty::<2>::new();
+    for number in 1..=5 {
+        assert_eq!(faulty.frame(number, 0).1, []);
+    }
+    let (done, told) = faulty.frame(6, 2);
+    assert_eq!(done, Ok(DtLimit::Retry));
+    let parts: Vec<f64> = told.iter().map(|retry| retry.part).collect();
+    assert_eq!(parts, [0.5, 0.25]);
+    assert!((told[0].time - 0.1).abs() < 1e-12 && told[1].time == told[0].time);
+    let text = told[1].to_string();
+    assert!(text.contains("with 1/4 of the time step"), "{text}");
+    assert!(text.contains("limited by retry"), "{text}");
+    let mut substeps = Vec::new();
+    for number in 7..=15 {
+        let before = faulty.simulation.substeps();
+        let (done, told) = faulty.frame(number, 0);
+        assert_eq!(told, []);
+        substeps.push((faulty.simulation.substeps() - before, done.unwrap()));
+    }
+    let limits: Vec<bool> = (substeps.iter().map(|(_, limit)| *limit == DtLimit::Retry)).collect();
+    assert_eq!(limits, [[true; 7].as_slice(), &[false; 2]].concat());
+    let ratio = |a: usize, b: usize| substeps[a].0 as f64 / substeps[b].0 as f64;
+    assert!(
+        (ratio(2, 3) - 2.0).abs() < 0.3 && (ratio(6, 7) - 2.0).abs() < 0.3,
+        "{substeps:?}"
+    );
+}
+
+/// When 1/64 of the step has not helped, the frame's start is what is left.
+fn what_cannot_be_helped_ends_at_the_frames_start<const D: usize>()
+where
+    f32: Instance<D>,
+{
+    let mut faulty = Faulty::<D>::new();
+    for number in 1..=5 {
+        assert_eq!(faulty.frame(number, 0).1, []);
+    }
+    let before = bits(&faulty.simulation.snapshot(ALL));
+    faulty.simulation.diagnostics(); // the shortest substep is since this was asked
+    let totals = faulty.simulation.diagnostics();
+    let (done, told) = faulty.frame(6, usize::MAX);
+    let failure = done.unwrap_err();
+    assert_eq!(
+        told.last().map(|retry| (told.len(), retry.part)),
+        Some((6, 1.0 / 64.0))
+    );
+    let text = failure.to_string();
+    for word in [
+        "finite number",
+        "substep",
+        "particle",
+        "material \"",
+        "limited by retry",
+    ] {
+        assert!(text.contains(word), "{text}");
+    }
+    assert!(before == bits(&faulty.simulation.snapshot(ALL)));
+    assert_eq!(totals, faulty.simulation.diagnostics());
+    // The fault gone, it goes on as if nothing had been.
+    let mut untouched = Faulty::<D>::new();
+    for number in 1..=5 {
+        assert_eq!(untouched.frame(number, 0).1, []);
+    }
+    let limits = [&mut faulty, &mut untouched].map(|one| one.frame(6, 0));
+    assert_eq!(limits[0], limits[1]);
+    let ends = [&faulty, &untouched].map(|one| bits(&one.simulation.snapshot(ALL)));
+    assert!(ends[0] == ends[1]);
+}
+
+#[test]
+fn what_cannot_be_helped_ends_at_the_frames_start_2d() {
+    what_cannot_be_helped_ends_at_the_frames_start::<2>();
+}
+
+#[test]
+fn what_cannot_be_helped_ends_at_the_frames_start_3d() {
+    what_cannot_be_helped_ends_at_the_frames_start::<3>();
+}
+
+fn thrown<T: Instance<2>>(speed: f64, frames: u32) -> Result<(), Failure> {
+    let dust = Material {
+        name: "dust".into(),
+        density: 1.0,
+        model: Model::Dust(Dust),
+    };
+    let mut setup = Setup::<2>::new(0.1, vec![dust]);
+    setup.time_step = TimeStep::Fixed(1e-3);
+    let batch = ParticleBatch {
+        position: vec![[0.0; 2]],
+        velocity: vec![[speed, 0.0]],
+        volume: vec![1e-2],
+        ..ParticleBatch::default()
+    };
+    let mut simulation = Simulation::<T, 2>::new(setup, &[batch]).unwrap();
+    for number in 1..=frames {
+        let end = f64::from(number);
+        frame(&mut simulation, |s| s.advance_to(end), |_| {})?;
+    }
+    Ok(())
+}
+
+/// What moves too far for places to be told apart is stopped, and said so, in time.
+#[test]
+fn a_particle_out_of_range_is_a_failure() {
+    for failure in [thrown::<f32>(1e30, 1), thrown::<f64>(1e30, 1)] {
+        let text = failure.unwrap_err().to_string();
+        assert!(
+            text.contains("jumped") && text.contains("particle 0"),
+            "{text}"
+        );
+    }
+    // A thousand moves of nearly a million cells a frame: out of range in the second frame or so.
+    for failure in [thrown::<f32>(9e7, 5), thrown::<f64>(9e7, 5)] {
+        let failure = failure.unwrap_err();
+        assert!(failure.what.contains("too far"), "{failure}");
+        assert!(failure.time > 0.9, "{failure}");
+    }
+}
+
+/// A fluid that a command makes impossible: what was ordered stays when the frame begins again.
+#[test]
+fn commands_outlast_a_retry() {
+    let water = Material {
+        name: "water".into(),
+        density: 1000.0,
+        model: Model::Fluid(Fluid::inviscid(1e5)),
+    };
+    let batch = ParticleBatch {
+        position: (0..400)
+            .map(|i| [0.05 * f64::from(i % 20), 0.05 * f64::from(i / 20)])
+            .collect(),
+        volume: vec![0.0025],
+        ..ParticleBatch::default()
+    };
+    let mut simulation = Simulation::<f64, 2>::new(Setup::new(0.1, vec![water]), &[batch]).unwrap();
+    simulation.begin_frame();
+    simulation.substep().unwrap();
+    simulation.command(Command::Gravity([0.0, -2.0, 0.0]));
+    simulation.command(Command::Pointer(Some(Pointer {
+        position: [0.5, 0.5, 0.0],
+        radius: 1.0,
+        softening: 0.0,
+        action: PointerAction::Attract(f64::NAN),
+    })));
+    let failure = simulation.substep().unwrap_err();
+    let retry = simulation.retry_frame(&failure).unwrap();
+    assert_eq!((retry.time, simulation.substeps()), (0.0, 0));
+    assert_eq!(simulation.gravity(), [0.0, -2.0, 0.0]);
+    assert!(simulation.substep().is_err(), "the hand is still there");
+    simulation.command(Command::Pointer(None));
+    simulation.retry_frame(&failure).unwrap();
+    simulation.substep().unwrap();
+}
+
+#[test]
+fn without_a_mark_there_is_no_way_back_and_the_mark_counts_as_memory() {
+    let (setup, batches) = brawl::<3>(16);
+    let mut simulation = Simulation::<f32, 3>::new(setup, &batches).unwrap();
+    let particles = simulation.particle_count();
+    assert_eq!(simulation.memory().retry_bytes, 0);
+    let failure = Failure {
+        what: String::new(),
+        particle: 0,
+        material: String::new(),
+        body: 0,
+        position: [0.0; 3],
+        count: 1,
+        substep: 1,
+        time: 0.0,
+        dt: 1.0,
+        dt_limit: DtLimit::Fixed,
+    };
+    assert_eq!(simulation.retry_frame(&failure), None);
+    simulation.begin_frame();
+    let bytes = simulation.memory().retry_bytes / particles;
+    assert!((64..160).contains(&bytes), "{bytes} bytes a particle");
+}
