@@ -63,6 +63,8 @@ pub struct AppState {
     pub held: Option<(V3, Grip)>,
     /// Whether the list of scenes is open.
     pub show_scenes: bool,
+    /// Frames tried again that have been told of.
+    pub(crate) told_retries: u64,
     /// What was typed to find a scene, and which of those found Enter opens.
     pub search: (String, usize),
     /// Small pictures of the scenes, by name; they come one by one.
@@ -132,6 +134,7 @@ impl AppState {
             hand: Hand::of(Controls::default(), EARTH, 1.0, 0.01),
             held: None,
             show_scenes: false,
+            told_retries: 0,
             search: (String::new(), 0),
             thumbnails: HashMap::new(),
             // They would lie over one of the sides.
@@ -561,6 +564,17 @@ impl AppState {
     pub fn say(&mut self, what: String, now: f64) {
         const SECONDS: f64 = 6.0;
         self.notice = Some((what, now + SECONDS));
+    }
+
+    /// Says it when a frame had to be tried again.
+    pub(crate) fn tell_retries(&mut self, now: f64) {
+        let tried = |side: &Side| side.readouts.retries;
+        let retries = self.shown.sides.iter().map(tried).sum();
+        let before = core::mem::replace(&mut self.told_retries, retries);
+        let latest = self.shown.sides.iter().find_map(|side| side.retry.clone());
+        if let Some(why) = latest.filter(|_| retries > before) {
+            self.say(why, now);
+        }
     }
 
     pub(crate) fn order(&mut self, order: Order) {

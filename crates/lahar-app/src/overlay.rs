@@ -266,6 +266,7 @@ fn wrap(painter: &egui::Painter, font: &FontId, words: &[String], width: f32) ->
 pub(crate) fn messages(state: &mut AppState, ui: &Ui, rect: Rect) {
     let painter = ui.painter_at(rect);
     let now = ui.input(|input| input.time);
+    state.tell_retries(now);
     if let Some(why) = state.failure() {
         let text = format!("{why}\n\nR restarts the scene, 1 to 9 choose another.");
         card(&painter, rect, rect.center(), &text, colour::JELLY);

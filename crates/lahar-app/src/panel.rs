@@ -423,6 +423,9 @@ fn readouts(state: &AppState, ui: &mut Ui) {
             row("limited by", now.limit.name().to_owned());
             let rate = millions(now.particle_steps_per_second);
             row("particle-steps/s", rate);
+            if now.retries > 0 {
+                row("frames tried again", now.retries.to_string());
+            }
         }
         row("particles", grouped(now.particles as u64));
         if let Some(facts) = state.facts() {

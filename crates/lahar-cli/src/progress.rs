@@ -74,6 +74,14 @@ impl Progress {
         }
     }
 
+    /// Something to know, in between.
+    pub(crate) fn note(&self, what: &str) {
+        match &self.bar {
+            Some(bar) => bar.suspend(|| terminal::note(what)),
+            None => terminal::note(what),
+        }
+    }
+
     /// Takes the bar away.
     pub(crate) fn finish(self) {
         if let Some(bar) = self.bar {

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use lahar::{Advance, Failure, Field, Simulate};
+use lahar::{Advance, DtLimit, Failure, Field, Retry, Simulate};
 use lahar_io::image::Scenery;
 use lahar_io::output::{
     self, OutputError, PhaseSeconds, Record, RunFolder, Status, Writer, Written,
@@ -65,8 +65,10 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
                 started,
                 output_seconds: 0.0,
                 particle_steps: 0,
+                retries: Vec::new(),
             };
             let end = going.frames();
+            record.retries = core::mem::take(&mut going.retries);
             (record.particle_steps, record.phase_seconds) = (
                 going.particle_steps,
                 PhaseSeconds::new(going.simulation.phase_times(), going.output_seconds),
@@ -87,7 +89,7 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
     let recorded = record.write(&folder.record());
     match outcome {
         Err(Stop::Failure { failure, frame }) => Err(CliError::Simulation {
-            what: failure.to_string(),
+            what: Retry::in_vain(&failure),
             folder: folder.path().to_owned(),
             frames: frame,
         }),
@@ -111,6 +113,25 @@ enum End {
     Deadline,
 }
 
+/// What to do about a step that was too long.
+const FIXED_STEP: &str = "; the scene fixes dt, a shorter one would spare this";
+
+/// So many substeps.
+fn take(simulation: &mut dyn Simulate, substeps: u64) -> Result<Advance, Failure> {
+    let mut whole = Advance {
+        dt_min: f64::INFINITY,
+        ..Advance::default()
+    };
+    for _ in 0..substeps {
+        let one = simulation.substep()?;
+        whole.substeps += one.substeps;
+        if one.dt_min < whole.dt_min {
+            (whole.dt_min, whole.limit) = (one.dt_min, one.limit);
+        }
+    }
+    Ok(whole)
+}
+
 /// What stopped the frames before their end.
 enum Stop {
     Failure {
@@ -130,6 +151,7 @@ struct Going<'a> {
     started: f64,
     output_seconds: f64,
     particle_steps: u64,
+    retries: Vec<String>,
 }
 
 impl Going<'_> {
@@ -154,10 +176,12 @@ impl Going<'_> {
                 return Ok(End::Deadline);
             }
             let particles = self.simulation.particle_count() as u64;
-            let advance = self.advance(frame).map_err(|failure| Stop::Failure {
-                failure: Box::new(failure),
-                frame,
-            })?;
+            let advance = self
+                .advance(frame, progress)
+                .map_err(|failure| Stop::Failure {
+                    failure: Box::new(failure),
+                    frame,
+                })?;
             self.particle_steps += particles * advance.substeps;
             self.write(frame).map_err(Stop::Output)?;
             let seconds = clock::seconds() - self.started;
@@ -172,24 +196,23 @@ impl Going<'_> {
         Ok(End::Done)
     }
 
-    fn advance(&mut self, frame: u64) -> Result<Advance, Failure> {
-        let Some(substeps) = self.plan.scene.substeps_per_frame else {
-            return self
-                .simulation
-                .advance_to(frame as f64 / self.plan.scene.frame_rate);
-        };
-        let mut whole = Advance {
-            dt_min: f64::INFINITY,
-            ..Advance::default()
-        };
-        for _ in 0..substeps {
-            let one = self.simulation.substep()?;
-            whole.substeps += one.substeps;
-            if one.dt_min < whole.dt_min {
-                (whole.dt_min, whole.limit) = (one.dt_min, one.limit);
-            }
-        }
-        Ok(whole)
+    /// A frame, with shorter time steps if it fails.
+    fn advance(&mut self, number: u64, progress: &Progress) -> Result<Advance, Failure> {
+        let scene = &self.plan.scene;
+        let retries = &mut self.retries;
+        lahar::frame(
+            &mut *self.simulation,
+            |simulation| match scene.substeps_per_frame {
+                Some(substeps) => take(simulation, substeps),
+                None => simulation.advance_to(number as f64 / scene.frame_rate),
+            },
+            |retry| {
+                let fixed = retry.failure.dt_limit == DtLimit::Fixed;
+                let advice = if fixed { FIXED_STEP } else { "" };
+                progress.note(&format!("warning: {retry}{advice}"));
+                retries.push(retry.to_string());
+            },
+        )
     }
 
     /// Hands a frame to the writing thread.
@@ -247,7 +270,7 @@ fn finish_record(
         Ok((_, written)) => record.frames = written.frames,
         Err(Stop::Failure { failure, frame }) => {
             record.frames = *frame;
-            record.failure = Some(failure.to_string());
+            record.failure = Some(Retry::in_vain(failure));
         }
         Err(Stop::Output(error)) => record.failure = Some(error.to_string()),
     }

@@ -25,7 +25,8 @@ pub(crate) fn show(args: &args::Show) -> Result<ExitCode, CliError> {
 /// What the scene comes to.
 pub(crate) fn describe(scene: &Scene, isa: Isa) -> Result<Value, CliError> {
     let built = scene.build(isa)?;
-    let simulation = built.simulation;
+    let mut simulation = built.simulation;
+    simulation.begin_frame(); // the copy that a run keeps counts too
     let (dt, limit) = simulation.next_dt();
     let memory = simulation.memory();
     let bodies: Vec<Value> = scene
@@ -73,9 +74,10 @@ pub(crate) fn describe(scene: &Scene, isa: Isa) -> Result<Value, CliError> {
         "materials": materials,
         "blocks": memory.blocks,
         "nodes": memory.nodes,
-        "memory_bytes": memory.grid_bytes + memory.particle_bytes,
+        "memory_bytes": memory.grid_bytes + memory.particle_bytes + memory.retry_bytes,
         "grid_bytes": memory.grid_bytes,
         "particle_bytes": memory.particle_bytes,
+        "retry_bytes": memory.retry_bytes,
         "sound_speed": fastest,
         "dt": dt,
         "dt_limit": limit.name(),
@@ -147,10 +149,11 @@ pub(crate) fn text(value: &Value) -> String {
     line(
         "memory",
         format!(
-            "{}B ({}B particles, {}B grid)",
+            "{}B ({}B particles, {}B grid, {}B to begin a frame again)",
             with_prefix(number("memory_bytes")),
             with_prefix(number("particle_bytes")),
             with_prefix(number("grid_bytes")),
+            with_prefix(number("retry_bytes")),
         ),
     );
     line(

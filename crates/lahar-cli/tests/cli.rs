@@ -93,8 +93,7 @@ fn a_run_leaves_what_was_asked_for() {
     assert_eq!(names(&folder.join("images")).len(), 4);
     let csv = std::fs::read_to_string(folder.join("diagnostics.csv")).unwrap();
     assert_eq!(csv.lines().count(), 5);
-    let record: Value =
-        serde_json::from_slice(&std::fs::read(folder.join("run.json")).unwrap()).unwrap();
+    let record: Value = record(&folder);
     assert_eq!(record["status"], "done");
     assert_eq!(record["frames"], 4);
     assert_eq!(record["threads"], 1);
@@ -523,4 +522,91 @@ fn validate_prints_a_table_or_json_and_leaves_a_report() {
     let output = lahar(here.path(), &["validate", "Z1"]);
     code(&output, 2);
     assert!(errors(&output).contains("there is no case \"Z1\""));
+}
+
+fn record(folder: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(folder.join("run.json")).unwrap()).unwrap()
+}
+
+/// Jelly with a step that is twice as long as it stands, coarse.
+const TOO_LONG: [&str; 8] = [
+    "run",
+    "jelly-drop",
+    "--set=dx=0.05",
+    "--set=dt=6.0e-3",
+    "--set=duration=1.0",
+    "--threads=1",
+    "--format=npz",
+    "-oout",
+];
+
+#[test]
+fn a_frame_that_fails_is_tried_again_with_a_shorter_step_and_recorded() {
+    let here = here();
+    let words = [TOO_LONG.as_slice(), &["--set=frame_rate=2.0"]].concat();
+    let output = lahar(here.path(), &words);
+    code(&output, 0);
+    let said = errors(&output);
+    for words in [
+        "with 1/2 of the time step",
+        "limited by fixed",
+        "the scene fixes dt",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+    let record = record(&here.path().join("out"));
+    let retries = record["retries"].as_array().expect("a list");
+    assert!(!retries.is_empty());
+    assert!(
+        retries
+            .iter()
+            .all(|retry| said.contains(retry.as_str().expect("text")))
+    );
+    assert_eq!(
+        (&record["status"], &record["frames"]),
+        (&"done".into(), &3.into())
+    );
+    let diagnostics =
+        std::fs::read_to_string(here.path().join("out/diagnostics.csv")).expect("written");
+    let second = diagnostics.lines().nth(2).expect("a frame");
+    assert!(second.contains(",retry,"), "{second}");
+}
+
+#[test]
+fn a_run_that_cannot_be_helped_keeps_the_frames_before() {
+    let here = here();
+    let words = [TOO_LONG.as_slice(), &["--set=frame_rate=60.0"]].concat();
+    let output = lahar(here.path(), &words);
+    code(&output, 1);
+    let said = errors(&output);
+    for words in [
+        "material \"",
+        "substep",
+        "down to 1/64 of the time step",
+        "limited by retry",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
+    let record = record(&here.path().join("out"));
+    assert_eq!(record["status"], "failed");
+    assert!(
+        record["retries"]
+            .as_array()
+            .is_some_and(|retries| retries.len() >= 6)
+    );
+    let frames = record["frames"].as_u64().expect("a number");
+    assert!(frames >= 1);
+    for frame in 0..frames {
+        assert!(
+            here.path()
+                .join(format!("out/frames/{frame:06}.npz"))
+                .is_file()
+        );
+    }
+    assert!(
+        !here
+            .path()
+            .join(format!("out/frames/{frames:06}.npz"))
+            .exists()
+    );
 }

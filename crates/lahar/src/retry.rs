@@ -32,6 +32,16 @@ impl fmt::Display for Retry {
     }
 }
 
+impl Retry {
+    /// What to say of a failure that no shorter time step has helped.
+    pub fn in_vain(failure: &Failure) -> String {
+        let least = 2_u32.pow(MOST_HALVINGS);
+        format!(
+            "{failure}; the frame was tried with down to 1/{least} of the time step, from its start"
+        )
+    }
+}
+
 /// The state at the start of a frame.
 pub(crate) struct Mark<T, const D: usize> {
     pub(crate) state: State<T, D>,

@@ -23,6 +23,7 @@ use crate::sort::{DRIFT_LIMIT, Escaped, Sorter, in_range};
 use crate::step::StepControl;
 use crate::store::{Group, Layout, PerParticle, Run, block_edge, locate};
 use crate::transfer::Scheme;
+use crate::transfer::gather::MOST_CELLS;
 use crate::transfer::scatter::What;
 
 /// How far sound goes, in cells, between two corrections of the fluids' volumes.
@@ -754,14 +755,14 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             .expect("every row is in a run");
         let position = self.position(group, run.block, row);
         let what = if bad.is_some() {
-            "a particle's motion or strain is no longer a finite number"
+            "a particle's motion or strain is no longer a finite number".to_owned()
         } else if in_range(run.block) {
-            "a particle has jumped by more than a million cells"
+            format!("a particle has jumped by more than {MOST_CELLS} cells")
         } else {
-            "a particle is too far from the origin to be placed"
+            "a particle is too far from the origin to be placed".to_owned()
         };
         Failure {
-            what: what.into(),
+            what,
             particle: group.id[row],
             material: self.setup.materials[material].name.clone(),
             body: group.body.get(row),

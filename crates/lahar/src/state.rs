@@ -19,6 +19,7 @@ use crate::store::{Group, PerParticle, Run};
 pub(crate) struct State<T, const D: usize> {
     groups: Vec<Rows<T, D>>,
     drift: f64,
+    uncorrected: f64,
     taken: Vec<Taken<D>>,
     readings: Vec<Readings>,
     escaped: Escaped,
@@ -58,6 +59,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         let Self {
             groups: now,
             drift,
+            uncorrected,
             taken,
             readings,
             escaped,
@@ -96,6 +98,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         State {
             groups,
             drift: *drift,
+            uncorrected: *uncorrected,
             taken: taken.clone(),
             readings: readings.clone(),
             escaped: *escaped,
@@ -112,6 +115,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             let Group {
                 law: _,
                 density: _,
+                sound_speed: _,
                 columns,
                 mass,
                 volume0,
@@ -127,6 +131,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             runs.clone_from(&rows.runs);
         }
         self.drift = state.drift;
+        self.uncorrected = state.uncorrected;
         self.taken.clone_from(&state.taken);
         self.readings.clone_from(&state.readings);
         self.escaped = state.escaped;

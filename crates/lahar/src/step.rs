@@ -6,8 +6,12 @@ use crate::setup::TimeStep;
 /// Part of the explicit limit dx²/(2 d ν) that viscosity is given.
 const VISCOUS_SAFETY: f64 = 0.5;
 
-/// Frames that a shortened step must do, the one that asked for it included, before it is doubled.
+/// Frames that a shortened step must do, the one that asked for it included, before it is doubled; twice as
+/// many after each further frame that failed.
 const CLEAN_FRAMES: u32 = 4;
+
+/// So many failed frames make recovering no slower.
+const MOST_PATIENCE: u32 = 12;
 
 /// Substeps left to a moment that are still evened out, so that the last is not a splinter.
 const EVEN_OUT: f64 = 2.0;
@@ -35,6 +39,8 @@ pub(crate) struct StepControl {
     part: f64,
     /// Frames done at this part.
     clean_frames: u32,
+    /// Frames that had to be tried again.
+    failed_frames: u32,
     /// With a fixed step: the time at which the part changed, and the substeps then.
     changed: (f64, u64),
 }
@@ -54,6 +60,7 @@ impl StepControl {
             shortest: (f64::INFINITY, DtLimit::Frame),
             part: 1.0,
             clean_frames: 0,
+            failed_frames: 0,
             changed: (0.0, 0),
         }
     }
@@ -87,11 +94,13 @@ impl StepControl {
         }
     }
 
-    /// A frame is done and the next begins: a shortened step slowly recovers.
+    /// A frame is done and the next begins: a shortened step slowly recovers, the more slowly the more
+    /// often that went wrong.
     pub(crate) fn frame_begins(&mut self) {
         if self.part < 1.0 {
             self.clean_frames += 1;
-            if self.clean_frames >= CLEAN_FRAMES {
+            let failures = self.failed_frames.clamp(1, MOST_PATIENCE) - 1;
+            if self.clean_frames >= CLEAN_FRAMES << failures {
                 self.take_part(2.0 * self.part);
             }
         }
@@ -100,6 +109,7 @@ impl StepControl {
     /// Halves the step, `halvings` times; returns what part of the usual it is now.
     pub(crate) fn shorten(&mut self, halvings: u32) -> f64 {
         self.take_part(self.part * 0.5_f64.powi(halvings as i32));
+        self.failed_frames = self.failed_frames.saturating_add(1);
         self.part
     }
 

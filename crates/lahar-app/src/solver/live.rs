@@ -12,7 +12,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::Instant;
 
-use lahar::{Advance, Command, Failure, Field, Simulate};
+use lahar::{Advance, Command, Failure, Field, Retry, Simulate};
 
 use super::clock::Throughput;
 use super::{Readouts, Side, mistake};
@@ -30,18 +30,39 @@ struct Runner {
     frame_substeps: u64,
     /// Whether it has reached the end of the frame at hand.
     arrived: bool,
+    /// The frame that it would begin again.
+    begun: Option<u64>,
+    /// Why it last did.
+    retry: Option<String>,
 }
 
 impl Runner {
+    /// At the start of a frame, a copy to begin it again from.
+    fn begin(&mut self, frame: u64) {
+        if self.begun != Some(frame) {
+            self.begun = Some(frame);
+            self.simulation.begin_frame();
+        }
+    }
+
+    /// Whether the step went well; if not, the frame begins again with a shorter one.
     fn step(
         &mut self,
         step: impl FnOnce(&mut dyn Simulate) -> Result<Advance, Failure>,
-    ) -> Result<(), String> {
+    ) -> Result<bool, String> {
         let start = Instant::now();
         let done = catch_unwind(AssertUnwindSafe(|| step(self.simulation.as_mut())));
         let advance = match done {
             Ok(Ok(advance)) => advance,
-            Ok(Err(failure)) => return Err(self.failed(failure.to_string())),
+            Ok(Err(failure)) => {
+                let Some(retry) = self.simulation.retry_frame(&failure) else {
+                    return Err(self.failed(Retry::in_vain(&failure)));
+                };
+                self.retry = Some(self.failed(retry.to_string()));
+                self.readouts.retries += 1;
+                self.frame_substeps = 0;
+                return Ok(false);
+            }
             Err(panic) => return Err(self.failed(mistake(&*panic))),
         };
         if advance.substeps > 0 {
@@ -52,7 +73,7 @@ impl Runner {
         let particles = self.simulation.particle_count() as u64;
         self.throughput
             .add(start.elapsed(), advance.substeps * particles);
-        Ok(())
+        Ok(true)
     }
 
     fn failed(&self, why: String) -> String {
@@ -87,6 +108,8 @@ impl Live {
                 throughput: Throughput::default(),
                 frame_substeps: 0,
                 arrived: false,
+                begun: None,
+                retry: None,
             }
         };
         Self {
@@ -122,11 +145,11 @@ impl Live {
             .filter(|runner| !runner.arrived && runner.simulation.time() < end)
             .min_by(|a, b| a.simulation.time().total_cmp(&b.simulation.time()));
         if let Some(runner) = behind {
+            runner.begin(self.frame);
             if end - runner.simulation.time() > SINGLE_SUBSTEPS_LEFT * runner.readouts.dt {
                 runner.step(|simulation| simulation.substep())?;
             } else {
-                runner.step(|simulation| simulation.advance_to(end))?;
-                runner.arrived = true;
+                runner.arrived = runner.step(|simulation| simulation.advance_to(end))?;
             }
         }
         let done =
@@ -146,7 +169,11 @@ impl Live {
     /// A substep of the first, and of the others until they have caught up.
     pub(super) fn substep(&mut self) -> Result<(), String> {
         let mut until = f64::NEG_INFINITY;
+        while self.frame_end() <= self.time() {
+            self.frame += 1;
+        }
         for runner in &mut self.runners {
+            runner.begin(self.frame);
             loop {
                 runner.step(|simulation| simulation.substep())?;
                 if runner.simulation.time() >= until - 0.5 * runner.readouts.dt {
@@ -172,6 +199,7 @@ impl Live {
                 Side {
                     title: runner.title.clone(),
                     snapshot: Arc::new(simulation.snapshot(fields)),
+                    retry: runner.retry.clone(),
                     readouts: Readouts {
                         time: simulation.time(),
                         real_time,
@@ -183,5 +211,84 @@ impl Live {
                 }
             })
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lahar::material::{Corotated, lame};
+    use lahar::{Material, Model, ParticleBatch, Setup, Simulation, TimeStep};
+
+    /// A square of jelly that falls on nothing, stretched by its spin, with a step that is too long.
+    fn stiff() -> Simulation<f32, 2> {
+        let (lambda, mu) = lame(2e4, 0.3);
+        let jelly = Material {
+            name: "jelly".into(),
+            density: 500.0,
+            model: Model::Corotated(Corotated { lambda, mu }),
+        };
+        let mut setup = Setup::<2>::new(0.1, vec![jelly]);
+        setup.time_step = TimeStep::Fixed(0.025);
+        let places = (0..400).map(|i| [f64::from(i % 20), f64::from(i / 20)].map(|x| 0.05 * x));
+        let position: Vec<[f64; 2]> = places.collect();
+        let velocity = position.iter().map(|x| [0.5 - x[1], x[0] - 0.5]).collect();
+        let batch = ParticleBatch {
+            position,
+            velocity,
+            volume: vec![0.0025],
+            ..ParticleBatch::default()
+        };
+        Simulation::new(setup, &[batch]).expect("sound")
+    }
+
+    /// In the window a frame that fails is tried again as in a run without one, to the same bits; and
+    /// those beside it wait.
+    #[test]
+    fn a_frame_is_tried_again_as_without_a_window() {
+        let (frame_rate, frames) = (1.0, 3);
+        let sides = ["a", "b"].map(|title| {
+            let simulation: Box<dyn Simulate> = Box::new(stiff());
+            (title.to_owned(), simulation)
+        });
+        let mut live = Live::new(sides.into(), frame_rate);
+        let mut done = 0;
+        while done < frames {
+            done += u32::from(live.work().expect("a shorter step helps"));
+        }
+        let mut simulation = stiff();
+        let mut retries = Vec::new();
+        for number in 1..=frames {
+            let end = f64::from(number) / frame_rate;
+            let told = |retry: &Retry| retries.push(retry.to_string());
+            lahar::frame(&mut simulation, |s| s.advance_to(end), told).expect("here too");
+        }
+        assert!(!retries.is_empty());
+        let fields = [Field::Position, Field::Velocity];
+        for side in live.sides(&fields, 1.0) {
+            assert_eq!(side.readouts.retries, retries.len() as u64);
+            let last = retries.last().map(|why| format!("{}: {why}", side.title));
+            assert_eq!(side.retry, last);
+            let alone = simulation.snapshot(&fields);
+            for (shown, alone) in side.snapshot.columns.iter().zip(&alone.columns) {
+                assert_eq!(shown.1.to_f32(), alone.1.to_f32());
+            }
+        }
+    }
+
+    /// What cannot be helped is said, and the side that failed is named.
+    #[test]
+    fn a_failure_that_stays_ends_the_scene() {
+        let mut live = Live::new(vec![("a".to_owned(), Box::new(stiff()))], 1.0);
+        live.command(Command::Gravity([f64::NAN; 3]));
+        let mut end = live.work();
+        while end.is_ok() {
+            end = live.work();
+        }
+        let why = end.expect_err("the loop ends so");
+        assert!(
+            why.starts_with("a: a particle's motion") && why.contains("1/64"),
+            "{why}"
+        );
     }
 }

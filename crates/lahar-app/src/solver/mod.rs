@@ -78,6 +78,8 @@ pub struct Readouts {
     pub particle_steps_per_second: f64,
     /// Particles now.
     pub particles: usize,
+    /// Frames that had to be tried again with a shorter time step.
+    pub retries: u64,
     /// The frame of a recording, counted from 0.
     pub frame: usize,
 }
@@ -91,6 +93,8 @@ pub struct Side {
     pub snapshot: Arc<Snapshot>,
     /// Numbers for the panel.
     pub readouts: Readouts,
+    /// Why a frame was last tried again.
+    pub retry: Option<String>,
 }
 
 /// What the solver is doing.

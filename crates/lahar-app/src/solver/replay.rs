@@ -86,6 +86,7 @@ impl Replay {
                 frame: self.frame,
                 ..Readouts::default()
             },
+            retry: None,
         }
     }
 }

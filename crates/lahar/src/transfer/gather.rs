@@ -53,8 +53,9 @@ impl Bounds {
     }
 }
 
-/// A move of more cells than this in a substep is taken for a failure.
-const MOST_CELLS: f64 = 1e6;
+/// A move of more cells than this in a substep is taken for a failure: nothing that is to be resolved moves
+/// by more than one.
+pub(crate) const MOST_CELLS: f64 = 100.0;
 
 /// Moves the particles of `group` with the grid's velocities.
 pub(crate) fn gather<T: Lanes, const D: usize>(
