@@ -58,8 +58,8 @@ fn a_retried_frame_is_a_frame_of_the_shorter_step<T: Instance<D>, const D: usize
     assert_eq!(first.failure.material, "jelly");
     assert_eq!(first.failure.dt_limit, DtLimit::Fixed);
     assert!((1..=64).contains(&first.failure.substep), "{first}");
-    let of_first = retries.iter().filter(|retry| retry.time == 0.0);
-    let part = of_first.last().expect("there was one").part;
+    let mut of_first = retries.iter().filter(|retry| retry.time == 0.0);
+    let part = of_first.next_back().expect("there was one").part;
     let (direct, none) = frames::<T, D>(1, &stiff_brawl(TOO_LONG * part), 1);
     assert_eq!(none, []);
     assert!(direct[0] == retried[0], "{part}");
