@@ -9,11 +9,12 @@ use lahar::Command;
 use lahar_io::scene::{Comparison, Controls};
 
 use crate::camera::{Camera, V3, length, scale};
+use crate::collider_lines::collider_lines;
 use crate::colour::{self, ColourBy, Range};
 use crate::compare::Draft;
 use crate::controls::{Action, Direction};
 use crate::hand::{Grip, Hand};
-use crate::renderer::{Picture, Sprites, View};
+use crate::renderer::{Line, Picture, Sprites, View};
 use crate::scenery::{Scenery, sprites, usual_radius};
 use crate::scenes::{Changes, Facts, SceneCard, Setting};
 use crate::solver::{Condition, Order, Readouts, Shown, Side, Wanted};
@@ -84,6 +85,8 @@ pub struct AppState {
     /// Whether the view was turned, moved or zoomed; if not, it follows the window's size.
     pub view_is_own: bool,
     pub(crate) scenery: Scenery,
+    /// The scenery's lines and the colliders' of each side; none without colliders.
+    lines: Vec<Arc<Vec<Line>>>,
     /// Particles to draw, by side.
     pub(crate) sprites: Vec<Arc<Sprites>>,
     /// The direction that gravity has while its key is held, in scenes that want it so.
@@ -146,6 +149,7 @@ impl AppState {
             draft: Draft::default(),
             view_is_own: false,
             scenery: Scenery::default(),
+            lines: vec![],
             sprites: vec![],
             held_gravity: None,
             changes: wanted.changes,
@@ -532,7 +536,7 @@ impl AppState {
         Some(Picture {
             slot: side,
             sprites: Arc::clone(self.sprites.get(side)?),
-            lines: Arc::clone(&self.scenery.lines),
+            lines: Arc::clone(self.lines.get(side).unwrap_or(&self.scenery.lines)),
             view: View {
                 view: camera.view(self.scenery.origin),
                 projection: camera.projection(self.aspect),
@@ -545,7 +549,30 @@ impl AppState {
         })
     }
 
+    /// The lines of each side's moment, if there are colliders.
+    fn make_lines(&mut self) {
+        let Some(facts) = (self.shown.facts.as_ref()).filter(|f| !f.colliders.is_empty()) else {
+            self.lines.clear();
+            return;
+        };
+        let lines_at = |time: f64| {
+            let scenery = &self.scenery;
+            let moving = collider_lines(
+                &facts.colliders,
+                time,
+                facts.dimension,
+                scenery.extent,
+                scenery.origin,
+            );
+            Arc::new([scenery.lines.as_slice(), &moving].concat())
+        };
+        self.lines = (self.shown.sides.iter())
+            .map(|side| lines_at(side.snapshot.time))
+            .collect();
+    }
+
     fn make_sprites(&mut self) {
+        self.make_lines();
         let Some(facts) = &self.shown.facts else {
             return;
         };

@@ -13,6 +13,7 @@
 
 pub mod app_state;
 pub mod camera;
+mod collider_lines;
 pub mod colour;
 pub mod compare;
 pub mod controls;

@@ -3,7 +3,7 @@
 use lahar::Simulate;
 use lahar_io::image::Picture;
 use lahar_io::output::Recording;
-use lahar_io::scene::Controls;
+use lahar_io::scene::{ColliderInfo, Controls};
 
 use crate::colour::ColourBy;
 
@@ -58,6 +58,8 @@ pub struct Facts {
     pub dx: f64,
     /// Corners of the domain \[m\]; `None`: unbounded.
     pub domain: Option<([f64; 3], [f64; 3])>,
+    /// What material cannot enter.
+    pub colliders: Vec<ColliderInfo>,
     /// Gravity at the start \[m/s²\].
     pub gravity: [f64; 3],
     /// Frames per simulated second \[1/s\].

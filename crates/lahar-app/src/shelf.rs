@@ -9,7 +9,7 @@ use lahar::{Field, Isa};
 use lahar_io::builtin;
 use lahar_io::image::{Picture, Renderer, Scenery, Style};
 use lahar_io::output::Recording;
-use lahar_io::scene::{Controls, Scene};
+use lahar_io::scene::{Controls, Scene, colliders_of};
 use serde_json::Value;
 
 use crate::colour::{ColourBy, palette};
@@ -73,6 +73,7 @@ impl SceneSource for Shelf {
             dimension: scene.dimension,
             dx: simulation.dx(),
             domain: simulation.domain(),
+            colliders: scene.colliders.clone(),
             gravity: simulation.gravity(),
             frame_rate: scene.frame_rate,
             frames: None,
@@ -95,7 +96,7 @@ impl SceneSource for Shelf {
         let Footage::Simulation(simulation) = footage else {
             return None;
         };
-        let mut scenery = Scenery::of(simulation.as_ref(), &[]);
+        let mut scenery = Scenery::of(simulation.as_ref(), &[]).with_colliders(&facts.colliders);
         scenery.colours = palette(&facts.swatches)
             .iter()
             .map(|colour| [colour.r(), colour.g(), colour.b()])
@@ -134,6 +135,7 @@ fn replay(folder: &Path) -> Result<Stage, String> {
         dimension: record.dimension,
         dx: scene["dx"].as_f64().unwrap_or_default(),
         domain: corner("min").zip(corner("max")),
+        colliders: colliders_of(scene),
         gravity: vector(&scene["gravity"]).unwrap_or_default(),
         frame_rate: (scene["computed"]["frame_rate"].as_f64()).unwrap_or(DEFAULT_FRAME_RATE),
         frames: Some(recording.len()),

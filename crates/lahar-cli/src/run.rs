@@ -47,7 +47,7 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
         .iter()
         .map(|material| material.model.as_str())
         .collect();
-    let scenery = Scenery::of(&*simulation, &models);
+    let scenery = Scenery::of(&*simulation, &models).with_colliders(&plan.scene.colliders);
     let writer = Writer::start(output::Plan {
         folder: folder.clone(),
         dimension: simulation.dimension(),

@@ -33,13 +33,20 @@ pub(crate) fn describe(scene: &Scene, isa: Isa) -> Result<Value, CliError> {
         .bodies
         .iter()
         .zip(&built.body_particles)
-        .map(|(body, particles)| {
+        .zip(&built.left_out)
+        .map(|((body, particles), left_out)| {
             json!({
                 "name": body.name,
                 "material": scene.materials.get(body.material).map(|material| &material.name),
                 "particles": particles,
+                "left_out": left_out,
             })
         })
+        .collect();
+    let colliders: Vec<Value> = scene
+        .colliders
+        .iter()
+        .map(|info| json!({ "name": info.name, "what": info.words() }))
         .collect();
     let materials: Vec<Value> = scene
         .materials
@@ -71,6 +78,7 @@ pub(crate) fn describe(scene: &Scene, isa: Isa) -> Result<Value, CliError> {
         "dx": simulation.dx(),
         "particles": simulation.particle_count(),
         "bodies": bodies,
+        "colliders": colliders,
         "materials": materials,
         "blocks": memory.blocks,
         "nodes": memory.nodes,
@@ -123,12 +131,20 @@ pub(crate) fn text(value: &Value) -> String {
         line(
             "",
             format!(
-                "{}: {} of {}",
+                "{}: {} of {}{}",
                 plain(&body["name"]),
                 body["particles"],
-                plain(&body["material"])
+                plain(&body["material"]),
+                match body["left_out"].as_u64() {
+                    None | Some(0) => String::new(),
+                    Some(count) => format!(", {count} left out where colliders are"),
+                }
             ),
         );
+    }
+    for collider in value["colliders"].as_array().into_iter().flatten() {
+        let (name, what) = (plain(&collider["name"]), plain(&collider["what"]));
+        line("collider", format!("{name}: {what}"));
     }
     for material in value["materials"].as_array().into_iter().flatten() {
         line(

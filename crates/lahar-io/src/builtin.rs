@@ -40,6 +40,9 @@ const SCENES: &[Builtin] = scenes! {
     "spinning-jelly" 2 "Spinning jelly" "A square of jelly turns in free space: what a transfer scheme loses, shows.";
     "snowball" 2 "Snowball" "A thrown snowball bursts on a wall.";
     "obstacle" 2 "Dam break with elastic plates" "A wave bends two elastic plates and shoots over them.";
+    "square-obstacle" 2 "Dam break against a block" "A small block throws the tongue of water up and against the far wall.";
+    "beach" 2 "Waves on a beach" "A rocking flap makes waves that run up a beach and break.";
+    "mixer" 2 "Mixer" "A cross of paddles stirs water in two dyes.";
     "rain" 2 "Rain" "Rows of drops fall into a pool.";
     "jelly-letters" 2 "Letters of jelly" "The word MPM in jelly falls into a pool and floats.";
     "honey" 2 "Honey" "A thread of honey tears off, folds and piles up on a plate.";
@@ -50,6 +53,7 @@ const SCENES: &[Builtin] = scenes! {
     "planet" 2 "Planet and moon of water" "A moon of water falls on a planet of water, held together by a pull towards the middle.";
     "galaxy" 2 "Galaxy of dust" "A two-coloured disc of dust winds itself into spirals.";
     "taylor-green" 2 "Taylor-Green whirls" "Whirls in a periodic square stir two dyes.";
+    "box-obstacle-3d" 3 "Dam break against a box in 3D" "The wave splits at a box on the floor and closes behind it.";
     "knot-3d" 3 "Knot of jelly in 3D" "A knot of jelly, made from a mesh, falls and bounces." with "knot-3d.obj" at "knot-3d.obj";
     "drops-3d" 3 "Two drops in 3D" "Two drops of water meet off centre, without gravity.";
     "whirlpool-3d" 3 "Whirlpool in 3D" "A stirred basin: the surface sinks in the middle and rises at the walls.";

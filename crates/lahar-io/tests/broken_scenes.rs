@@ -516,6 +516,56 @@ const BROKEN: &[(&str, &str, &str)] = &[
         "dx = 0.05",
         "dx = 0.05\noutput = { fields = [\"velocty\"] }",
     ),
+    (
+        "a collider without a shape",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nname = \"gate\"",
+    ),
+    (
+        "a collider of a shape that is not possible",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { difference = [{ ball = { center = [1.0, 0.5], radius = 0.2 } }, { ball = { center = [1.0, 0.5], radius = 0.1 } }] }",
+    ),
+    (
+        "a stretched collider",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 }, scale = [1.0, 2.0] }",
+    ),
+    (
+        "a collider with a contact of walls only",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\ncontact = \"open\"",
+    ),
+    (
+        "a sticky collider with friction",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\ncontact = \"sticky\"\nfriction = 0.2",
+    ),
+    (
+        "a collider called like a side",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nname = \"left\"\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }",
+    ),
+    (
+        "two colliders of one name",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nname = \"a\"\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\n\n[[colliders]]\nname = \"a\"\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }",
+    ),
+    (
+        "a collider that moves twice",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\nspin = 1.0\nkeyframes = [{ time = 0.0 }]",
+    ),
+    (
+        "keyframes in disorder",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\nkeyframes = [{ time = 1.0 }, { time = 0.5 }]",
+    ),
+    (
+        "a typo in a keyframe",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\nkeyframes = [{ time = 1.0, rotation = 20.0 }]",
+    ),
 ];
 
 const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float volume\nend_header\n0.1 0.1 0.01\n0.3 0.1 0.01\n";

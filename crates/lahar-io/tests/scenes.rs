@@ -493,3 +493,52 @@ proptest! {
         }
     }
 }
+
+const IN_THE_WAY: &str = r#"
+dx = 0.05
+[domain]
+min = [0.0, 0.0]
+max = [2.0, 1.0]
+[materials.water]
+preset = "water"
+[[bodies]]
+name = "pool"
+material = "water"
+shape = { box = { min = [0.0, 0.0], max = [2.0, 0.5] } }
+sampling = "lattice"
+[[colliders]]
+name = "block"
+shape = { box = { min = [0.5, 0.0], max = [1.0, 0.25] } }
+"#;
+
+/// No particle starts where a collider is, the others keep their mass, and outlets are told.
+#[test]
+fn what_is_inside_a_collider_is_left_out() {
+    let scene = Scene::parse(IN_THE_WAY, "pool.toml", &[]).unwrap();
+    let mut built = scene.build(Isa::Portable).unwrap();
+    assert_eq!(built.left_out, [200]);
+    assert_eq!(built.body_particles, [1400]);
+    assert_eq!(built.warnings, [] as [&str; 0]);
+    let mass = built.simulation.diagnostics().mass;
+    assert!((mass - 0.875 * 998.2).abs() < 1e-3, "{mass}");
+    assert_eq!(scene.colliders[0].words(), "box, separate, standing");
+    let around = [(
+        "colliders.block.shape".to_owned(),
+        "{ box = { min = [-1, -1], max = [3, 0.6] } }".to_owned(),
+    )];
+    let scene = Scene::parse(IN_THE_WAY, "pool.toml", &around).unwrap();
+    let error = scene.build(Isa::Portable).err().unwrap().to_string();
+    assert!(error.contains("comes to no particle"), "{error}");
+}
+
+/// What a run records of a scene gives its colliders back, for replays.
+#[test]
+fn colliders_are_read_back_from_what_a_run_records() {
+    for name in ["beach", "mixer", "square-obstacle", "box-obstacle-3d"] {
+        let scene = Scene::load(name, &[]).unwrap();
+        assert!(!scene.colliders.is_empty());
+        let text = scene.resolved().to_string();
+        let resolved = serde_json::from_str(&text).unwrap();
+        assert_eq!(lahar_io::scene::colliders_of(&resolved), scene.colliders);
+    }
+}

@@ -79,6 +79,8 @@ pub enum DtLimit {
     Sound,
     /// A particle may cross a part of a cell.
     Speed,
+    /// A collider may cross a part of a cell.
+    Collider,
     /// Viscosity.
     Viscosity,
     /// The scene's longest substep.
@@ -97,6 +99,7 @@ impl DtLimit {
             Self::Fixed => "fixed",
             Self::Sound => "sound",
             Self::Speed => "speed",
+            Self::Collider => "collider",
             Self::Viscosity => "viscosity",
             Self::Longest => "longest",
             Self::Retry => "retry",

@@ -19,7 +19,9 @@
 
 mod columns;
 mod filling;
+mod surfaces;
 
+use crate::boundary::collider::Moving;
 use crate::boundary::impulse::Taken;
 use crate::boundary::walls::Walls;
 use crate::dispatch::on_level;
@@ -58,6 +60,8 @@ struct Link<const D: usize> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NodeForces<T, const D: usize> {
     pub(crate) dt: T,
+    /// \[m\]
+    pub(crate) dx: f64,
     /// Δt g.
     pub(crate) gravity_impulse: Vector<T, D>,
     /// The medium's velocity, and what is left of the difference to it after Δt.
@@ -97,8 +101,8 @@ pub(crate) struct Grid<T, const D: usize> {
     impulses: Vec<T>,
     /// How much of its own velocity a particle keeps: FLIP's blend.
     blend: f64,
-    /// By the number of the domain's side, what it took in the last update; lengths in cells from
-    /// node 0.
+    /// By the number of the domain's side, and then by collider, what it took in the last update;
+    /// lengths in cells from node 0.
     pub(crate) taken: Vec<Taken<D>>,
     /// By node of the tiles' blocks, what [`Grid::measure_filling`] found.
     excess: Vec<T>,
@@ -311,12 +315,23 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
     }
 
     /// Sums the tiles' contributions and makes velocity of momentum: v = p/m + Δt g, then the walls.
-    pub(crate) fn update(&mut self, isa: IsaToken, forces: &NodeForces<T, D>, walls: &Walls<D>) {
+    pub(crate) fn update(
+        &mut self,
+        isa: IsaToken,
+        forces: &NodeForces<T, D>,
+        walls: &Walls<D>,
+        colliders: &[Moving<D>],
+    ) {
         self.sum(isa, |this, block, nodes| {
             this.update_block(block, nodes, forces);
         });
-        self.taken.fill(Taken::NOTHING);
+        self.taken.clear();
+        self.taken.resize(2 * D + colliders.len(), Taken::NOTHING);
         self.constrain(walls);
+        let around: Vec<_> = colliders
+            .iter()
+            .map(|collider| self.around(collider, walls, forces.dx))
+            .collect();
         self.columns.fold(
             &mut self.nodes,
             self.planes,
@@ -324,6 +339,9 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             self.blend,
             &mut self.taken,
         );
+        for (number, (collider, near)) in colliders.iter().zip(around).enumerate() {
+            self.hold(collider, 2 * D + number, near, walls);
+        }
     }
 
     /// Lets the walls of [`crate::WallStyle::Nodes`] act.
@@ -495,6 +513,20 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
                 });
             }
         }
+    }
+
+    /// The box around all blocks that particles are in, in cells.
+    pub(crate) fn occupied(&self) -> ([f64; D], [f64; D]) {
+        let edge = block_edge(D) as f64;
+        let mut bounds = ([f64::INFINITY; D], [f64::NEG_INFINITY; D]);
+        for block in &self.tile_blocks {
+            for axis in 0..D {
+                let low = edge * f64::from(block[axis]);
+                bounds.0[axis] = bounds.0[axis].min(low);
+                bounds.1[axis] = bounds.1[axis].max(low + edge);
+            }
+        }
+        bounds
     }
 
     /// Σ `f` over the first numbers of the nodes, after [`Grid::sum_tiles`]: for gauges.

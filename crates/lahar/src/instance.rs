@@ -5,13 +5,14 @@
 //! reached through [`Instance`], whose four implementations are concrete and so belong to this
 //! crate alone.
 
-use crate::boundary::pointer::Push;
+use crate::boundary::collider::Moving;
+use crate::boundary::impulse::Taken;
 use crate::boundary::walls::Walls;
 use crate::grid::{Grid, NodeForces};
 use crate::material::{IsaToken, Law, Model, VolumeCorrection};
 use crate::math::Lanes;
 use crate::store::Group;
-use crate::transfer::gather::Bounds;
+use crate::transfer::gather::{Around, Bounds};
 use crate::transfer::scatter::What;
 use crate::transfer::{Scheme, gather, scatter, volume};
 
@@ -69,18 +70,19 @@ pub trait Kernels<const D: usize>: Lanes {
         isa: IsaToken,
         forces: &NodeForces<Self, D>,
         walls: &Walls<D>,
+        colliders: &[Moving<D>],
     );
-    /// G2P.
+    /// G2P, and particles put out of colliders; what the colliders took by that, lengths in cells from
+    /// node 0.
     #[doc(hidden)]
     fn gather(
         group: &mut Group<Self, D>,
         grid: &Grid<Self, D>,
-        walls: &Walls<D>,
-        push: Option<&Push<D>>,
+        around: Around<'_, D>,
         scheme: Scheme,
         isa: IsaToken,
         dt: f64,
-    ) -> Bounds;
+    ) -> (Bounds, Vec<Taken<D>>);
 }
 
 macro_rules! instance {
@@ -137,19 +139,19 @@ macro_rules! instance {
                 isa: IsaToken,
                 forces: &NodeForces<Self, $d>,
                 walls: &Walls<$d>,
+                colliders: &[Moving<$d>],
             ) {
-                grid.update(isa, forces, walls);
+                grid.update(isa, forces, walls, colliders);
             }
             fn gather(
                 group: &mut Group<Self, $d>,
                 grid: &Grid<Self, $d>,
-                walls: &Walls<$d>,
-                push: Option<&Push<$d>>,
+                around: Around<'_, $d>,
                 scheme: Scheme,
                 isa: IsaToken,
                 dt: f64,
-            ) -> Bounds {
-                gather::gather(group, grid, walls, push, scheme, isa, dt)
+            ) -> (Bounds, Vec<Taken<$d>>) {
+                gather::gather(group, grid, around, scheme, isa, dt)
             }
         }
     )*};

@@ -25,7 +25,10 @@ mod step;
 mod store;
 mod transfer;
 
-pub use boundary::{BoundaryImpulse, Contact, Corners, Cushion, Domain, Sides, WallStyle};
+pub use boundary::{
+    BoundaryImpulse, Collider, Contact, Corners, Cushion, Domain, Keyframe, Motion, Sides, Solid,
+    WallStyle,
+};
 pub use diagnostics::Diagnostics;
 pub use error::{DtLimit, Failure, SetupError};
 pub use forces::{AccelerationField, Force, Pull};

@@ -14,9 +14,12 @@
 //! bring, because FLIP and the staggered energy ask for a node's velocity before forces.
 //! Lever arms are r = x_i − x_p.
 
+use crate::boundary::Collider;
+use crate::boundary::collider::Moving;
 use crate::boundary::contact::{Column, ColumnNode};
 use crate::boundary::impulse::Taken;
 use crate::boundary::pointer::Push;
+use crate::boundary::surface::{NearNode, hold, near, put_out};
 use crate::boundary::walls::Walls;
 use crate::error::SetupError;
 use crate::forces;
@@ -86,6 +89,8 @@ pub struct Reference<const D: usize> {
     /// Where node 0 is \[m\].
     origin: Vector<f64, D>,
     walls: Walls<D>,
+    /// Lengths in cells from node 0.
+    colliders: Vec<Collider<D>>,
     particles: Vec<Particle<D>>,
     escaped: Vec<Particle<D>>,
     /// Where each particle started \[m\], by id.
@@ -119,6 +124,9 @@ impl<const D: usize> Reference<D> {
             measured.resize(particles.len(), batch.measure_volume);
         }
         forces::check(&setup.forces)?;
+        for collider in &setup.colliders {
+            collider.check()?;
+        }
         let mut reference = Self {
             starts: particles
                 .iter()
@@ -130,12 +138,22 @@ impl<const D: usize> Reference<D> {
             setup: setup.clone(),
             origin: Vector(origin),
             walls,
+            colliders: setup
+                .colliders
+                .iter()
+                .map(|collider| collider.in_units(setup.dx, origin))
+                .collect(),
             particles,
             escaped: Vec::new(),
         };
         let mut particles = core::mem::take(&mut reference.particles);
+        let colliders = reference.moving(0.0);
         for particle in &mut particles {
             reference.hold(particle);
+            // Its velocity is what it was given.
+            let given = particle.velocity;
+            reference.put_out(particle, &colliders);
+            particle.velocity = given;
         }
         reference.particles = particles;
         if measured.contains(&true) {
@@ -410,7 +428,7 @@ impl<const D: usize> Reference<D> {
 
     /// Forces and walls, for a substep of `dt` \[s\]. Nodes without mass are skipped.
     pub fn update_grid(&self, grid: &Grid<Momentum<D>, D>, dt: f64) -> Grid<Velocity<D>, D> {
-        let mut taken = vec![Taken::NOTHING; 2 * D];
+        let mut taken = vec![Taken::NOTHING; 2 * D + self.colliders.len()];
         let gravity = Vector(self.setup.gravity);
         let with_mass = grid.iter().filter(|(_, n)| n.mass > 0.0);
         let mut grid = with_mass
@@ -439,8 +457,70 @@ impl<const D: usize> Reference<D> {
                 (node, velocity)
             })
             .collect();
+        let colliders = self.moving(dt);
+        let around: Vec<_> = colliders
+            .iter()
+            .map(|collider| self.around(collider, &grid))
+            .collect();
         self.fold_walls(&mut grid);
+        for ((collider, nodes), taken) in colliders.iter().zip(around).zip(&mut taken[2 * D..]) {
+            self.hold_at(collider, nodes, &mut grid, taken);
+        }
         grid
+    }
+
+    /// The colliders in a substep of `dt` \[s\].
+    fn moving(&self, dt: f64) -> Vec<Moving<D>> {
+        let period = self
+            .walls
+            .period
+            .map(|cells| cells.map(|cells| cells as f64));
+        let of = |collider: &Collider<D>| Moving::of(collider, self.time, dt, period);
+        self.colliders.iter().map(of).collect()
+    }
+
+    /// The nodes around a collider, before walls have changed their masses.
+    fn around(&self, collider: &Moving<D>, grid: &Grid<Velocity<D>, D>) -> Vec<NearNode<D>> {
+        let with_mass = grid.iter().filter_map(|(&node, n)| {
+            let mut near = near(collider, node, &self.walls)?;
+            near.brought = n.mass;
+            near.moving = near.moving * self.setup.dx;
+            Some(near)
+        });
+        with_mass.collect()
+    }
+
+    /// Lets a collider act on the nodes around it.
+    fn hold_at(
+        &self,
+        collider: &Moving<D>,
+        mut nodes: Vec<NearNode<D>>,
+        grid: &mut Grid<Velocity<D>, D>,
+        taken: &mut Taken<D>,
+    ) {
+        for near in &mut nodes {
+            let n = &grid[&near.node];
+            (near.mass, near.velocity, near.before) = (n.mass, n.after, n.before);
+        }
+        let places: BTreeMap<[i64; D], usize> = nodes
+            .iter()
+            .enumerate()
+            .map(|(i, near)| (near.node, i))
+            .collect();
+        let find = |node| places.get(&self.walls.canonical(node)).copied();
+        let blend = match self.setup.transfer {
+            Transfer::Flip { blend } => blend,
+            Transfer::Pic | Transfer::Apic => 0.0,
+        };
+        hold(&mut nodes, find, collider.contact, blend, taken);
+        for near in &nodes {
+            let velocity = Velocity {
+                mass: near.mass,
+                before: near.before,
+                after: near.velocity,
+            };
+            grid.insert(near.node, velocity);
+        }
     }
 
     /// Lets the walls on their planes act on velocities.
@@ -492,6 +572,7 @@ impl<const D: usize> Reference<D> {
     /// G2P for a substep of `dt` \[s\].
     pub fn grid_to_particles(&mut self, grid: &Grid<Velocity<D>, D>, dt: f64) {
         let push = Push::of(self.pointer, self.origin.0, self.setup.dx, dt);
+        let colliders = self.moving(dt);
         let mut particles = core::mem::take(&mut self.particles);
         for particle in &mut particles {
             let (mut pic, mut change) = (Vector([0.0; D]), Vector([0.0; D]));
@@ -533,6 +614,7 @@ impl<const D: usize> Reference<D> {
                 particle.velocity = push.act(particle.velocity, self.in_cells(particle)); // (12)
             }
             self.keep_in_domain(particle);
+            self.put_out(particle, &colliders);
         }
         let (kept, gone) = particles.into_iter().partition(|p| !self.is_outside(p));
         self.particles = kept;
@@ -551,6 +633,16 @@ impl<const D: usize> Reference<D> {
             if let Some(high) = high {
                 *x = x.min(self.origin[axis] + high * dx);
             }
+        }
+    }
+
+    /// Colliders put a particle that is inside on their surface.
+    fn put_out(&self, particle: &mut Particle<D>, colliders: &[Moving<D>]) {
+        let mut x = self.in_cells(particle);
+        let (hold, motion) = (&self.walls.hold, (&mut x, &mut particle.velocity));
+        let dx = self.setup.dx;
+        if put_out(colliders, hold, [0.0; D], motion, dx, |_, _, _| {}) {
+            particle.position = self.origin + x * self.setup.dx;
         }
     }
 

@@ -1,6 +1,6 @@
 //! What a simulation is made of, as plain data: checked once, by [`crate::Simulation::new`].
 
-use crate::boundary::{Corners, Cushion, Domain};
+use crate::boundary::{Collider, Corners, Cushion, Domain};
 use crate::forces::Force;
 use crate::material::Material;
 use crate::probe::Probe;
@@ -17,6 +17,8 @@ pub struct Setup<const D: usize> {
     pub clamp: Option<Corners<D>>,
     /// Slows particles down before they reach the walls.
     pub cushion: Option<Cushion<D>>,
+    /// Bodies that the material cannot enter; they act one after the other, after the walls.
+    pub colliders: Vec<Collider<D>>,
     /// Acceleration of everything \[m/s²\].
     pub gravity: [f64; D],
     /// Forces besides gravity and stress.
@@ -46,6 +48,7 @@ impl<const D: usize> Setup<D> {
             domain: None,
             clamp: None,
             cushion: None,
+            colliders: Vec::new(),
             gravity: [0.0; D],
             forces: Vec::new(),
             kernel: Kernel::default(),

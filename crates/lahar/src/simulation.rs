@@ -3,10 +3,12 @@
 //! [`Simulation`] is the typed one; [`Simulate`] is the same without the types of numbers and
 //! dimension, for outlets that open whatever scene they are given.
 
-use crate::boundary::BoundaryImpulse;
+use crate::boundary::collider::Moving;
 use crate::boundary::impulse::Taken;
 use crate::boundary::pointer::Push;
+use crate::boundary::surface::put_out;
 use crate::boundary::walls::Walls;
+use crate::boundary::{BoundaryImpulse, Collider};
 use crate::diagnostics::Diagnostics;
 use crate::dispatch;
 use crate::error::{DtLimit, Failure, SetupError};
@@ -23,7 +25,7 @@ use crate::sort::{DRIFT_LIMIT, Escaped, Sorter, in_range};
 use crate::step::StepControl;
 use crate::store::{Group, Layout, PerParticle, Run, block_edge, locate};
 use crate::transfer::Scheme;
-use crate::transfer::gather::MOST_CELLS;
+use crate::transfer::gather::{Around, MOST_CELLS};
 use crate::transfer::scatter::What;
 
 /// How far sound goes, in cells, between two corrections of the fluids' volumes.
@@ -138,8 +140,8 @@ pub trait Simulate: Send {
     fn snapshot(&self, fields: &[Field]) -> Snapshot;
     /// Totals now. Sorts first if the next substep would: the run's bits do not change.
     fn diagnostics(&mut self) -> Diagnostics;
-    /// What each wall has taken from the material since the start, in the order of the sides. The
-    /// difference of two moments over the time between is the mean force.
+    /// What each wall and each collider has taken from the material since the start, in the order of
+    /// sides and colliders. The difference of two moments over the time between is the mean force.
     fn boundary_impulses(&self) -> Vec<BoundaryImpulse>;
     /// What probes have read since this was last asked, in the order of [`Setup::probes`]; the reading
     /// at the start comes first.
@@ -184,6 +186,8 @@ pub struct Memory {
 pub struct Simulation<T: Instance<D>, const D: usize> {
     pub(crate) setup: Setup<D>,
     pub(crate) walls: Walls<D>,
+    /// Lengths in cells from node 0.
+    pub(crate) colliders: Vec<Collider<D>>,
     /// Where node 0 is \[m\].
     pub(crate) origin: [f64; D],
     pub(crate) scheme: Scheme,
@@ -196,7 +200,8 @@ pub struct Simulation<T: Instance<D>, const D: usize> {
     /// Time since the fluids' volumes were last set right \[s\].
     pub(crate) uncorrected: f64,
     pub(crate) pointer: Option<Pointer>,
-    /// By the number of the domain's side, what it has taken since the start; lengths in metres.
+    /// By the number of the domain's side, and then by collider, what it has taken since the start;
+    /// lengths in metres.
     pub(crate) taken: Vec<Taken<D>>,
     pub(crate) escaped: Escaped,
     pub(crate) control: StepControl,
@@ -262,9 +267,12 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             .zip(&setup.materials)
             .map(|(law, m)| Group::new(law, m.density))
             .collect::<Vec<_>>();
+        let origin = setup.domain.as_ref().map_or([0.0; D], |domain| domain.min);
+        let in_cells = |collider: &Collider<D>| collider.in_units(setup.dx, origin);
         let mut simulation = Self {
             walls,
-            origin: setup.domain.as_ref().map_or([0.0; D], |domain| domain.min),
+            colliders: setup.colliders.iter().map(in_cells).collect(),
+            origin,
             grid: Grid::new(scheme),
             scheme,
             isa: IsaToken(level),
@@ -273,7 +281,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             drift: 0.0,
             uncorrected: 0.0,
             pointer: None,
-            taken: vec![Taken::NOTHING; 2 * D],
+            taken: vec![Taken::NOTHING; 2 * D + setup.colliders.len()],
             escaped: Escaped::default(),
             control: StepControl::new(setup.time_step, setup.dx),
             starts: setup
@@ -322,14 +330,24 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         check_batch(batch, &self.setup, self.next_id)?;
         let offset = self.scheme.offset();
         let mut located = Vec::with_capacity(count);
+        let now = self.moving(0.0);
         for (i, position) in batch.position.iter().enumerate() {
-            let place: [(i32, f64); D] = core::array::from_fn(|axis| {
+            let cells: [f64; D] = core::array::from_fn(|axis| {
                 // Whoever starts outside is put where the first substep would put it.
                 let (low, high) = self.walls.hold[axis];
                 let cells = (position[axis] - self.origin[axis]) / self.setup.dx;
-                let cells = cells.max(low.unwrap_or(cells)).min(high.unwrap_or(cells));
-                locate(cells, offset, D)
+                cells.max(low.unwrap_or(cells)).min(high.unwrap_or(cells))
             });
+            let mut place = cells.map(|cells| locate(cells, offset, D));
+            let edge = block_edge(D) as f64;
+            let middle = place.map(|(block, _)| edge * (f64::from(block) + 0.5) + offset);
+            let (mut x, mut v) = (Vector(place.map(|(_, x)| x)), Vector([0.0; D]));
+            let (hold, dx) = (&self.walls.hold, self.setup.dx);
+            if put_out(&now, hold, middle, (&mut x, &mut v), dx, |_, _, _| {}) {
+                for axis in 0..D {
+                    place[axis].1 = x[axis];
+                }
+            }
             if !in_range(place.map(|(block, _)| block)) {
                 return setup_error(
                     "position",
@@ -470,6 +488,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         self.control.wave_speed = wave_speed_squared.sqrt();
         self.control.gravity = Vector(self.setup.gravity).norm();
         self.control.field = self.largest_acceleration();
+        self.watch_colliders();
     }
 
     /// The largest acceleration of a particle by forces besides gravity \[m/s²\].
@@ -548,16 +567,57 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         self.sort_if_drifted();
         self.correct_volumes(dt);
         self.push_particles(dt);
+        let colliders = self.moving(dt);
         self.scatter(dt); // (1)–(4)
-        self.update(dt);
-        self.gather(dt, limit)?; // (5)–(8)
-        for (total, taken) in self.taken.iter_mut().zip(&self.grid.taken) {
-            total.add_scaled(taken, self.setup.dx, self.origin);
-        }
+        self.update(dt, &colliders);
+        self.gather(dt, limit, &colliders)?; // (5)–(8)
+        self.account(&colliders);
         let before = self.control.time();
         self.control.taken(dt, limit);
+        self.watch_colliders();
         self.read_probes(Some(before));
         Ok(())
+    }
+
+    /// The colliders in a substep of `dt` \[s\].
+    fn moving(&self, dt: f64) -> Vec<Moving<D>> {
+        let period = self
+            .walls
+            .period
+            .map(|cells| cells.map(|cells| cells as f64));
+        let time = self.control.time();
+        let of = |collider: &Collider<D>| Moving::of(collider, time, dt, period);
+        self.colliders.iter().map(of).collect()
+    }
+
+    /// What boundaries took in this substep, to what they have taken since the start.
+    fn account(&mut self, colliders: &[Moving<D>]) {
+        let dx = self.setup.dx;
+        let (sides, of_colliders) = self.taken.split_at_mut(2 * D);
+        for (total, taken) in sides.iter_mut().zip(&self.grid.taken) {
+            total.add_scaled(taken, dx, self.origin);
+        }
+        let each = of_colliders.iter_mut().zip(&self.grid.taken[2 * D..]);
+        for ((total, taken), collider) in each.zip(colliders) {
+            // About where its centre is now.
+            let from_center = (-collider.start.center() * dx).0;
+            total.add_scaled(taken, dx, from_center);
+        }
+    }
+
+    /// How fast colliders may move, for the next time step.
+    fn watch_colliders(&mut self) {
+        self.control.boundary_speed = 0.0;
+        if self.colliders.is_empty() {
+            return;
+        }
+        let (dt, _) = self.control.next();
+        let (time, occupied) = (self.control.time(), self.grid.occupied());
+        self.control.boundary_speed = self
+            .colliders
+            .iter()
+            .map(|collider| self.setup.dx * collider.largest_speed(time, dt, occupied))
+            .fold(0.0, f64::max);
     }
 
     /// P2G.
@@ -672,7 +732,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     }
 
     /// Momentum to velocity, forces, walls.
-    fn update(&mut self, dt: f64) {
+    fn update(&mut self, dt: f64, colliders: &[Moving<D>]) {
         let start = self.now();
         let fields = forces::any_on_nodes(&self.setup.forces);
         if fields {
@@ -682,13 +742,20 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         }
         let node_forces = NodeForces {
             dt: T::from_f64(dt),
+            dx: self.setup.dx,
             gravity_impulse: Vector(self.setup.gravity.map(|g| T::from_f64(g * dt))),
             drag: forces::drag(&self.setup.forces, dt)
                 .map(|(kept, medium)| (T::from_f64(kept), Vector(medium.map(T::from_f64)))),
             pointer: (self.pointer)
                 .map(|pointer| NodePointer::of(pointer, self.origin, self.setup.dx)),
         };
-        T::update(&mut self.grid, self.isa, &node_forces, &self.walls);
+        T::update(
+            &mut self.grid,
+            self.isa,
+            &node_forces,
+            &self.walls,
+            colliders,
+        );
         if fields {
             self.control.field = self.grid.largest_impulse() / dt;
         }
@@ -696,14 +763,21 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     }
 
     /// G2P.
-    fn gather(&mut self, dt: f64, limit: DtLimit) -> Result<(), Failure> {
+    fn gather(&mut self, dt: f64, limit: DtLimit, colliders: &[Moving<D>]) -> Result<(), Failure> {
         let start = self.now();
         let (mut speed_squared, mut moved, mut wave_speed_squared) = (0.0_f64, 0.0_f64, 0.0_f64);
         let mut failure = None;
         let push = Push::of(self.pointer, self.origin, self.setup.dx, dt);
         for (material, group) in self.groups.iter_mut().enumerate() {
-            let (grid, walls) = (&self.grid, &self.walls);
-            let found = T::gather(group, grid, walls, push.as_ref(), self.scheme, self.isa, dt);
+            let around = Around {
+                walls: &self.walls,
+                push: push.as_ref(),
+                colliders,
+            };
+            let (found, taken) = T::gather(group, &self.grid, around, self.scheme, self.isa, dt);
+            for (total, taken) in self.grid.taken[2 * D..].iter_mut().zip(&taken) {
+                total.add_scaled(taken, 1.0, [0.0; D]);
+            }
             speed_squared = speed_squared.max(found.speed_squared);
             moved = moved.max(found.moved);
             wave_speed_squared = wave_speed_squared.max(found.wave_modulus / group.density);
@@ -830,8 +904,12 @@ fn check<const D: usize>(setup: &Setup<D>, laws: usize) -> Result<Walls<D>, Setu
         _ => {}
     }
     forces::check(&setup.forces)?;
+    for collider in &setup.colliders {
+        collider.check()?;
+    }
     let walls = Walls::of(setup)?;
-    let boundaries: Vec<&str> = walls.sides().map(|(name, _)| name).collect();
+    let names = setup.colliders.iter().map(|collider| &*collider.name);
+    let boundaries: Vec<&str> = walls.sides().map(|(name, _)| name).chain(names).collect();
     probe::check(setup, &boundaries)?;
     let shortest = crate::kernel::STENCIL as i64;
     for axis in 0..D {
@@ -1042,12 +1120,16 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
     }
 
     fn boundary_impulses(&self) -> Vec<BoundaryImpulse> {
-        let of_side = |(name, side): (&str, usize)| BoundaryImpulse {
+        let of = |name: &str, number: usize| BoundaryImpulse {
             name: name.into(),
-            impulse: three(self.taken[side].impulse.0),
-            angular_impulse: self.taken[side].angular,
+            impulse: three(self.taken[number].impulse.0),
+            angular_impulse: self.taken[number].angular,
         };
-        self.walls.sides().map(of_side).collect()
+        let sides = self.walls.sides().map(|(name, side)| of(name, side));
+        let colliders = self.setup.colliders.iter().zip(2 * D..);
+        sides
+            .chain(colliders.map(|(collider, number)| of(&collider.name, number)))
+            .collect()
     }
 
     fn take_probe_samples(&mut self) -> Vec<ProbeSamples> {

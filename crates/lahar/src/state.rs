@@ -70,6 +70,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             starts: _, // only grows: the ids say how far
             grid: _,   // follows from the runs
             walls: _,
+            colliders: _, // follow from the time
             origin: _,
             scheme: _,
             isa: _,

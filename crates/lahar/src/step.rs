@@ -23,6 +23,8 @@ pub(crate) struct StepControl {
     dx: f64,
     /// Largest particle speed \[m/s\].
     pub(crate) speed: f64,
+    /// Largest speed of a collider's surface \[m/s\].
+    pub(crate) boundary_speed: f64,
     /// Largest elastic wave speed \[m/s\].
     pub(crate) wave_speed: f64,
     /// Largest kinematic viscosity \[m²/s\].
@@ -51,6 +53,7 @@ impl StepControl {
             step,
             dx,
             speed: 0.0,
+            boundary_speed: 0.0,
             wave_speed: 0.0,
             viscosity: 0.0,
             gravity: 0.0,
@@ -130,6 +133,7 @@ impl StepControl {
         let limits = [
             (cfl * self.dx / self.wave_speed, DtLimit::Sound),
             (cfl * self.dx / speed, DtLimit::Speed),
+            (cfl * self.dx / self.boundary_speed, DtLimit::Collider),
             (
                 VISCOUS_SAFETY * self.dx * self.dx / (6.0 * self.viscosity),
                 DtLimit::Viscosity,

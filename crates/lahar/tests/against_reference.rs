@@ -184,6 +184,39 @@ fn all_options_3d_f32() {
     all_options::<f32, 3>(16, 8, 2e-4);
 }
 
+/// Colliders of all shapes and motions, with every contact.
+fn among_colliders<T: Instance<D>, const D: usize>(cells: usize, steps: usize, limit: f64) {
+    for contact in common::CONTACTS {
+        for transfer in [Transfer::Flip { blend: 0.95 }, Transfer::Apic] {
+            let (mut setup, batches) = brawl::<D>(cells);
+            setup.time_step = TimeStep::Fixed(4e-4);
+            setup.transfer = transfer;
+            setup.colliders = common::crowd(setup.dx * cells as f64, contact);
+            let difference = compare::<T, D>(&setup, &batches, steps);
+            assert!(
+                difference < limit,
+                "{contact:?} {transfer:?}: {difference:e}"
+            );
+        }
+    }
+}
+
+#[test]
+fn among_colliders_2d_f64() {
+    among_colliders::<f64, 2>(40, 60, 1e-9);
+}
+
+#[test]
+fn among_colliders_3d_f64() {
+    among_colliders::<f64, 3>(20, 12, 1e-9);
+}
+
+/// Rounding decides at some nodes whether they stick.
+#[test]
+fn among_colliders_3d_f32() {
+    among_colliders::<f32, 3>(20, 8, 2e-3);
+}
+
 /// A periodic axis whose length is no whole number of blocks, crossed several times.
 fn periodic<const D: usize>(cells: usize)
 where
@@ -204,6 +237,9 @@ where
         style: WallStyle::Plane,
     });
     setup.time_step = TimeStep::Fixed(5e-4);
+    // At the seam, and moving through it.
+    setup.colliders = common::crowd(size, Contact::Separate { friction: 0.1 });
+    setup.colliders.remove(0);
     for batch in &mut batches {
         batch.velocity[0][0] = 6.0;
     }

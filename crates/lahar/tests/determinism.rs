@@ -1,11 +1,12 @@
 //! Same scene, same bits: over threads, over shifts by whole blocks, over looking at it.
 
+#[expect(dead_code, reason = "other tests use the rest")]
 mod common;
 
-use common::{ALL, bits, brawl, brawl_with_all_options, run_on};
+use common::{ALL, bits, brawl, brawl_with_all_options, crowd, run_on};
 use lahar::Instance;
 use lahar::particles::Field;
-use lahar::{Isa, ParticleBatch, Setup, Simulate, Simulation, Transfer};
+use lahar::{Collider, Contact, Isa, Motion, ParticleBatch, Setup, Simulate, Simulation, Transfer};
 
 /// Bits on 1, 2, 3 and 8 threads, over enough sorts that particles change blocks and order.
 fn same_bits_on_any_number_of_threads<T: Instance<D>, const D: usize>(
@@ -67,8 +68,43 @@ fn threads_do_not_change_bits_3d() {
 }
 
 #[test]
+fn threads_do_not_change_bits_among_colliders() {
+    let (mut setup, batches) = brawl(64);
+    let contact = Contact::Separate { friction: 0.2 };
+    setup.colliders = crowd(64.0 * setup.dx, contact);
+    same_bits_on_any_number_of_threads::<f32, 2>((setup, batches), 0.4, Transfer::Apic);
+    let (mut setup, batches) = brawl(32);
+    setup.colliders = crowd(32.0 * setup.dx, contact);
+    same_bits_on_any_number_of_threads::<f32, 3>((setup, batches), 0.3, Transfer::Apic);
+}
+
+#[test]
 fn threads_do_not_change_bits_with_all_options() {
     same_bits_on_any_number_of_threads::<f32, 2>(brawl_with_all_options(64), 0.4, Transfer::Apic);
+}
+
+/// Moves a collider as the test below moves particles.
+fn move_by<const D: usize>(collider: &mut Collider<D>, by: f64) {
+    let shift = |x: &mut [f64; D]| {
+        x[0] += by;
+        x[D - 1] -= by;
+    };
+    shift(&mut collider.center);
+    for solid in &mut collider.solids {
+        *solid = solid.mapped(
+            |mut x| {
+                shift(&mut x);
+                x
+            },
+            |v| v,
+            1.0,
+        );
+    }
+    if let Motion::Keyframes(frames) = &mut collider.motion {
+        frames
+            .iter_mut()
+            .for_each(|frame| shift(&mut frame.position));
+    }
 }
 
 /// The same scene elsewhere: everything but positions keeps its bits.
@@ -76,6 +112,7 @@ fn same_bits_elsewhere<T: Instance<D>, const D: usize>(shift_cells: f64) {
     let (mut setup, batches) = brawl::<D>(32);
     setup.domain = None;
     setup.gravity = [0.0; D];
+    setup.colliders = crowd(32.0 * setup.dx, Contact::Separate { friction: 0.2 });
     let moved: Vec<_> = batches
         .iter()
         .cloned()
@@ -100,6 +137,10 @@ fn same_bits_elsewhere<T: Instance<D>, const D: usize>(shift_cells: f64) {
             batch
         })
         .collect();
+    let mut there = setup.clone();
+    for collider in &mut there.colliders {
+        move_by(collider, shift_cells * setup.dx);
+    }
     let fields = &[
         Field::Velocity,
         Field::Affine,
@@ -109,13 +150,16 @@ fn same_bits_elsewhere<T: Instance<D>, const D: usize>(shift_cells: f64) {
         Field::Id,
     ];
     let here = run_on::<T, D>(2, &setup, &moved, 0.25);
-    let there = run_on::<T, D>(2, &setup, &shifted, 0.25);
+    let there = run_on::<T, D>(2, &there, &shifted, 0.25);
     assert!(
         here.phase_times().sorts >= 5,
         "only {} sorts",
         here.phase_times().sorts
     );
-    assert!(bits(&here.snapshot(fields)) == bits(&there.snapshot(fields)));
+    assert!(
+        bits(&here.snapshot(fields)) == bits(&there.snapshot(fields)),
+        "by {shift_cells} cells"
+    );
 }
 
 #[test]

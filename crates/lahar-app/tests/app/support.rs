@@ -56,6 +56,7 @@ impl SceneSource for Blocks {
             dimension: simulation.dimension(),
             dx: simulation.dx(),
             domain: simulation.domain(),
+            colliders: vec![],
             gravity: simulation.gravity(),
             frame_rate: 60.0,
             frames: None,

@@ -19,13 +19,17 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
+use crate::scene::ColliderInfo;
 use drawn::Drawn;
-use lahar::{Field, Simulate, Snapshot};
+use lahar::boundary::Placed;
+use lahar::{Collider, Field, Simulate, Snapshot};
 
 pub use beside::beside;
 pub use camera::Camera;
 pub use film::Film;
-pub use palette::{BACKGROUND, Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, model_colours};
+pub use palette::{
+    BACKGROUND, COLLIDER, Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, model_colours,
+};
 
 /// The fields that a picture is drawn from; those that a snapshot lacks are done without.
 pub const FIELDS: &[Field] = &[
@@ -118,6 +122,8 @@ pub struct Scenery {
     pub colours: Vec<Colour>,
     /// Colours of bodies that have their own, by number.
     pub bodies: Vec<Option<Colour>>,
+    /// Colliders and their colours; in 2D without end along z.
+    pub colliders: Vec<(Collider<3>, Colour)>,
 }
 
 impl Scenery {
@@ -145,7 +151,21 @@ impl Scenery {
             background: BACKGROUND,
             colours: model_colours(models),
             bodies: Vec::new(),
+            colliders: Vec::new(),
         }
+    }
+
+    /// With `colliders`.
+    #[must_use]
+    pub fn with_colliders(mut self, colliders: &[ColliderInfo]) -> Self {
+        self.colliders = colliders
+            .iter()
+            .map(|info| {
+                let colour = info.color.unwrap_or(COLLIDER);
+                (info.collider.clone(), colour)
+            })
+            .collect();
+        self
     }
 }
 
@@ -272,11 +292,27 @@ impl Renderer {
     /// Draws one moment.
     pub fn render(&self, snapshot: &Snapshot) -> Picture {
         let particles = Drawn::from(snapshot, &self.scenery, self.style.colouring);
+        let solids: Vec<Solid> = self
+            .scenery
+            .colliders
+            .iter()
+            .map(|(collider, colour)| Solid {
+                placed: collider.at(snapshot.time),
+                colour: palette::linear(*colour),
+            })
+            .collect();
         match &self.view {
-            View::Plane(plane) => plane.render(&particles),
-            View::Space(space) => space.render(&particles),
+            View::Plane(plane) => plane.render(&particles, &solids),
+            View::Space(space) => space.render(&particles, &solids),
         }
     }
+}
+
+/// A collider as the painters take it.
+struct Solid {
+    placed: Placed<3>,
+    /// In linear light.
+    colour: [f32; 3],
 }
 
 #[cfg(test)]
@@ -308,6 +344,50 @@ mod tests {
             background: BACKGROUND,
             colours: model_colours(&["fluid", "corotated"]),
             bodies: Vec::new(),
+            colliders: Vec::new(),
+        }
+    }
+
+    /// A collider is in the picture where it is at the time, and nowhere else.
+    #[test]
+    fn colliders_are_drawn_where_they_are() {
+        for (dimension, up) in [(2, 1), (3, 1)] {
+            let red = [255, 0, 0];
+            let mut collider = Collider::still(
+                "ball",
+                vec![lahar::Solid::Ball {
+                    center: [0.5, 0.5, 0.5 * f64::from(dimension - 2)],
+                    radius: 0.3,
+                }],
+                lahar::Contact::Sticky,
+            );
+            collider.motion = lahar::Motion::Steady {
+                velocity: [1.0, 0.0, 0.0],
+                spin: [0.0; 3],
+            };
+            let scenery = Scenery {
+                up,
+                colliders: vec![(collider, red)],
+                ..scenery(dimension as usize)
+            };
+            let renderer = Renderer::new(scenery, Style::default());
+            let middle = |time: f64| {
+                let mut moment = snapshot(dimension as usize, &[], 0.01, &[]);
+                moment.time = time;
+                let picture = renderer.render(&moment);
+                let (mut columns, mut count) = (0.0, 0.0);
+                for (at, pixel) in picture.rgb.as_chunks::<3>().0.iter().enumerate() {
+                    if pixel[0] > 60 && pixel[1] < pixel[0] / 2 && pixel[2] < pixel[0] / 2 {
+                        columns += (at % picture.width as usize) as f64;
+                        count += 1.0;
+                    }
+                }
+                assert!(count > 1000.0, "{dimension}D: {count} pixels");
+                columns / count / f64::from(picture.width)
+            };
+            let (early, late) = (middle(0.0), middle(1.0));
+            assert!((0.15..0.4).contains(&early), "{dimension}D: {early}");
+            assert!((0.6..0.85).contains(&late), "{dimension}D: {late}");
         }
     }
 

@@ -26,6 +26,9 @@ const SOLIDS: [Colour; 4] = [
 const GRAINS: [Colour; 3] = [hex(0xEE_EEF0), hex(0xD8_B982), hex(0xA9_8467)];
 
 /// Colours of bodies, by number.
+/// Of colliders that have none of their own.
+pub const COLLIDER: Colour = hex(0x8A_98_A3);
+
 pub(super) const BODIES: [Colour; 8] = [
     hex(0x06_8587),
     hex(0xED_553B),

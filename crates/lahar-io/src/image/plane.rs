@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use super::palette::{self, ToScreen};
-use super::{Drawn, Picture, Scenery, Style};
+use super::{Drawn, Picture, Scenery, Solid, Style};
 
 /// Reach h of a bump, in sizes of a particle: gaps between neighbours up to two and a half sizes wide are filled.
 pub(super) const REACH: f32 = 2.0;
@@ -66,7 +66,7 @@ impl Plane {
         ];
     }
 
-    pub(super) fn render(&self, particles: &Drawn) -> Picture {
+    pub(super) fn render(&self, particles: &Drawn, solids: &[Solid]) -> Picture {
         let (columns, rows) = (self.width * self.samples, self.height * self.samples);
         // Sum of bumps, then of bump × colour.
         let mut sums = vec![[0.0_f32; 4]; columns * rows];
@@ -128,6 +128,7 @@ impl Plane {
                 light[row * self.width + column] = total;
             }
         }
+        self.draw_solids(&mut light, solids);
         self.draw_walls(&mut light);
         Picture {
             width: self.width as u32,
@@ -151,6 +152,24 @@ impl Plane {
             at(left - self.corner[0], self.width)..at(right - self.corner[0], self.width),
             at(self.corner[1] - top, self.height)..at(self.corner[1] - bottom, self.height),
         ]
+    }
+
+    /// Colliders, with soft edges, before the particles that touch them.
+    fn draw_solids(&self, light: &mut [[f32; 3]], solids: &[Solid]) {
+        let pixels = self.scale / self.samples as f64;
+        let [columns, rows] = self.inside();
+        for solid in solids {
+            for row in rows.clone() {
+                for column in columns.clone() {
+                    let x = self.corner[0] + (column as f64 + 0.5) / pixels;
+                    let y = self.corner[1] - (row as f64 + 0.5) / pixels;
+                    let (distance, _) = solid.placed.distance([x, y, 0.0]);
+                    let part = (0.5 - distance * pixels).clamp(0.0, 1.0) as f32;
+                    let seen = &mut light[row * self.width + column];
+                    *seen = palette::mix(*seen, solid.colour, part);
+                }
+            }
+        }
     }
 
     /// A thin line just outside the domain, so that it hides nothing.

@@ -9,7 +9,7 @@ use core::f32::consts::TAU;
 
 use super::camera::{self, Camera, add_scaled, cross, dot, sub, unit};
 use super::palette::{self, ToScreen};
-use super::{Drawn, Picture, Scenery, Style};
+use super::{Drawn, Picture, Scenery, Solid, Style};
 
 /// Radius of a ball, in sizes of a particle.
 const RADIUS: f32 = 0.9;
@@ -20,6 +20,9 @@ const JUMP: f32 = 2.0;
 
 /// Samples a side of the map of what the light sees.
 const SHADOW: usize = 512;
+
+/// Steps of a march along a ray at the most.
+const MARCHES: usize = 96;
 
 /// A sample that shows no particle.
 const NOTHING: u32 = u32::MAX;
@@ -73,7 +76,7 @@ impl Space {
         }
     }
 
-    pub(super) fn render(&self, particles: &Drawn) -> Picture {
+    pub(super) fn render(&self, particles: &Drawn, solids: &[Solid]) -> Picture {
         let eye = Eye::new(
             &self.camera,
             self.width * self.samples,
@@ -81,9 +84,10 @@ impl Space {
         );
         let shadow = Shadow::cast(self, particles);
         let mut seen = eye.balls(particles);
-        let raw = seen.depth.clone();
+        let mut raw = seen.depth.clone();
         eye.smooth(&mut seen, particles);
-        let mut light = eye.paint(self, &seen, particles, &shadow);
+        eye.trace(self, solids, &mut seen, &mut raw);
+        let mut light = eye.paint(self, &seen, (particles, solids), &shadow);
         self.draw_edges(&eye, &raw, &mut light);
 
         let screen = ToScreen::new();
@@ -106,6 +110,17 @@ impl Space {
             height: self.height as u32,
             rgb,
         }
+    }
+
+    /// Where a ray, in its own length, comes into the box and where it leaves it.
+    fn crossing(&self, from: [f32; 3], along: [f32; 3]) -> Option<(f32, f32)> {
+        let (mut enter, mut leave) = (0.0_f32, f32::INFINITY);
+        for i in 0..3 {
+            let sides = [self.min[i], self.max[i]].map(|side| (side - from[i]) / along[i]);
+            enter = enter.max(sides[0].min(sides[1]));
+            leave = leave.min(sides[0].max(sides[1]));
+        }
+        (enter < leave).then_some((enter, leave))
     }
 
     /// Where a ray meets the floor inside the box \[m\], and how far away.
@@ -307,6 +322,46 @@ impl Eye {
         Seen { depth, particle }
     }
 
+    /// Adds the colliders, as far as they are within the scene's box: marches along each ray by the
+    /// distance that is free around it. Solid k is seen as particle `NOTHING − 1 − k`.
+    fn trace(&self, space: &Space, solids: &[Solid], seen: &mut Seen, raw: &mut [f32]) {
+        if solids.is_empty() {
+            return;
+        }
+        let diagonal = dot(sub(space.max, space.min), sub(space.max, space.min)).sqrt();
+        let near = 1e-3 * f64::from(diagonal);
+        for row in 0..self.height {
+            for column in 0..self.width {
+                let at = row * self.width + column;
+                let ray = self.ray(column as f32, row as f32);
+                let Some((enter, leave)) = space.crossing(self.from, ray) else {
+                    continue;
+                };
+                let leave = leave.min(raw[at]).min(seen.depth[at]);
+                let length = f64::from(dot(ray, ray).sqrt());
+                for (number, solid) in solids.iter().enumerate() {
+                    let mut depth = f64::from(enter);
+                    for _ in 0..MARCHES {
+                        if depth >= f64::from(leave) || depth >= f64::from(seen.depth[at]) {
+                            break;
+                        }
+                        let point = core::array::from_fn(|i| {
+                            f64::from(self.from[i]) + depth * f64::from(ray[i])
+                        });
+                        let (free, _) = solid.placed.distance(point);
+                        if free < near {
+                            seen.depth[at] = depth as f32;
+                            raw[at] = depth as f32;
+                            seen.particle[at] = NOTHING - 1 - number as u32;
+                            break;
+                        }
+                        depth += free / length;
+                    }
+                }
+            }
+        }
+    }
+
     /// Depth, smoothed over about two balls, along rows and columns in turn. What is much nearer does not pull, and
     /// what is much farther pulls no more than what is a little farther: edges stay where they are.
     fn smooth(&self, seen: &mut Seen, particles: &Drawn) {
@@ -431,7 +486,7 @@ impl Eye {
         &self,
         space: &Space,
         seen: &Seen,
-        particles: &Drawn,
+        (particles, solids): (&Drawn, &[Solid]),
         shadow: &Shadow,
     ) -> Vec<[f32; 3]> {
         let far = palette::linear(space.background);
@@ -454,9 +509,19 @@ impl Eye {
                 }));
                 continue;
             }
-            let radius = RADIUS * particles.size[particle as usize];
             let centre = self.point(&seen.depth, at);
-            let normal = self.normal(&seen.depth, at, centre);
+            let solid = solids.get((NOTHING - 1 - particle) as usize);
+            let (radius, normal, colour) = match solid {
+                Some(solid) => {
+                    let (_, normal) = solid.placed.distance(centre.map(f64::from));
+                    (0.01 * diagonal, normal.map(|n| n as f32), solid.colour)
+                }
+                None => (
+                    RADIUS * particles.size[particle as usize],
+                    self.normal(&seen.depth, at, centre),
+                    particles.colour[particle as usize],
+                ),
+            };
             let view = unit(ray.map(|c| -c));
             let open = 1.0 - 0.75 * self.hidden(&seen.depth, at, centre, normal, 5.0 * radius);
             let lamp = dot(normal, space.lamp);
@@ -470,7 +535,6 @@ impl Eye {
                 0.0
             };
             let rim = (1.0 - dot(normal, view).max(0.0)).powi(4) * 0.10 * open;
-            let colour = particles.colour[particle as usize];
             let surface: [f32; 3] =
                 core::array::from_fn(|i| colour[i] * (around + lit) * 1.15 + shine + rim * sky[i]);
             let haze = ((seen.depth[at] - nearest) / diagonal).clamp(0.0, 1.0) * 0.28;

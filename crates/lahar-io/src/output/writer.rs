@@ -281,6 +281,7 @@ mod tests {
             background: BACKGROUND,
             colours: model_colours(&["fluid"]),
             bodies: Vec::new(),
+            colliders: Vec::new(),
         };
         let renderer = Renderer::new(
             scenery,

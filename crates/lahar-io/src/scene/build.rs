@@ -1,11 +1,13 @@
 //! From a plan to a simulation with its particles.
 
+use super::forces::lattice;
 use super::plan::{Body, Plan, Source, Volume};
 use crate::even::even_volumes;
 use crate::sampling::{Random, Sampling, sample};
 use crate::shape::Shape;
+use lahar::boundary::Placed;
 use lahar::material::Fluid;
-use lahar::{Deformation, Model, ParticleBatch, Setup};
+use lahar::{Collider, Deformation, Model, ParticleBatch, Setup};
 
 impl<const D: usize> Plan<D> {
     /// What the simulator is made from.
@@ -15,6 +17,7 @@ impl<const D: usize> Plan<D> {
             domain: self.domain.clone(),
             clamp: self.clamp,
             cushion: self.cushion,
+            colliders: self.colliders.clone(),
             gravity: self.gravity,
             forces: self.forces.clone(),
             kernel: self.kernel,
@@ -27,21 +30,57 @@ impl<const D: usize> Plan<D> {
         }
     }
 
-    /// The particles of every body; bodies are numbered in the order of the scene.
-    pub(crate) fn batches(&self, seed: u64) -> Vec<ParticleBatch<D>> {
+    /// The particles of every body; bodies are numbered in the order of the scene. Where colliders are,
+    /// none are made: with how many were left out of each. What of a list is there is added to
+    /// `warnings`.
+    pub(crate) fn batches(
+        &self,
+        seed: u64,
+        warnings: &mut Vec<String>,
+    ) -> (Vec<ParticleBatch<D>>, Vec<usize>) {
+        let inside = Inside(self.colliders.iter().map(|c| (c, c.at(0.0))).collect());
         self.bodies
             .iter()
             .enumerate()
             .map(|(index, body)| {
+                if let Source::List(list) = &body.source
+                    && let Some((count, names)) = inside.count(&list.position)
+                {
+                    warnings.push(format!("{count} particles of body \"{}\" are inside {names}: they start on the surface", body.name));
+                }
                 let material = &self.materials[body.material];
-                let mut batch = self.batch(body, index, seed, material.density);
+                let (mut batch, left_out) =
+                    self.batch(body, index, seed, material.density, &inside);
                 if let Model::Fluid(fluid) = &material.model
                     && self.starts_hydrostatic(body, fluid)
                 {
                     put_under_pressure(&mut batch, body, fluid, material.density, self.gravity);
                 }
-                batch
+                (batch, left_out)
             })
+            .unzip()
+    }
+
+    /// Bodies' expected particles, in order; about, where colliders take some of a body's space.
+    pub(crate) fn expected_particles(&self) -> Vec<f64> {
+        let inside = Inside(self.colliders.iter().map(|c| (c, c.at(0.0))).collect());
+        // Places along an axis of a body that are looked at.
+        let places = if D == 2 { 200 } else { 40 };
+        let free = |body: &Body<D>| match &body.source {
+            Source::Shape { region, .. } if !self.colliders.is_empty() => {
+                let all = lattice(region.bounds(), places);
+                let filled = all.iter().filter(|x| region.contains(x));
+                let (count, free) = filled.fold((0.0_f64, 0.0), |(count, free), x| {
+                    let is_free = inside.of(x).is_none();
+                    (count + 1.0, free + f64::from(u8::from(is_free)))
+                });
+                free / count.max(1.0)
+            }
+            _ => 1.0,
+        };
+        self.bodies
+            .iter()
+            .map(|body| body.expected_particles() * free(body))
             .collect()
     }
 
@@ -67,7 +106,16 @@ impl<const D: usize> Plan<D> {
         found
     }
 
-    fn batch(&self, body: &Body<D>, index: usize, seed: u64, density: f64) -> ParticleBatch<D> {
+    /// The particles of a body, and how many were left out where colliders are.
+    fn batch(
+        &self,
+        body: &Body<D>,
+        index: usize,
+        seed: u64,
+        density: f64,
+        inside: &Inside<'_, D>,
+    ) -> (ParticleBatch<D>, usize) {
+        let mut left_out = 0;
         let mut batch = ParticleBatch {
             material: body.material,
             body: index as u32,
@@ -93,6 +141,13 @@ impl<const D: usize> Plan<D> {
                 } else {
                     vec![region.volume() / batch.position.len().max(1) as f64]
                 };
+                left_out = batch.position.len();
+                let mut free = batch.position.iter().map(|x| inside.of(x).is_none());
+                if batch.volume.len() > 1 {
+                    batch.volume.retain(|_| free.next() == Some(true));
+                }
+                batch.position.retain(|x| inside.of(x).is_none());
+                left_out -= batch.position.len();
             }
             Source::List(list) => {
                 batch.position = list.position.clone();
@@ -123,7 +178,7 @@ impl<const D: usize> Plan<D> {
         }
         add_motion(&mut batch, body, self.dx);
         add_spread(&mut batch, body, seed);
-        batch
+        (batch, left_out)
     }
 }
 
@@ -160,6 +215,29 @@ fn put_under_pressure<const D: usize>(
         .map(|i| of(&batch.volume, i) / jacobian[i])
         .collect();
     batch.deformation = Deformation::Jacobian(jacobian);
+}
+
+/// The colliders at the start.
+struct Inside<'a, const D: usize>(Vec<(&'a Collider<D>, Placed<D>)>);
+
+impl<const D: usize> Inside<'_, D> {
+    /// The first collider that `x` is in.
+    fn of(&self, x: &[f64; D]) -> Option<&str> {
+        let all = self.0.iter();
+        let found = all.filter(|(_, placed)| placed.distance(*x).0 < 0.0);
+        found.map(|(collider, _)| collider.name.as_str()).next()
+    }
+
+    /// How many of `positions` are in colliders, and in which: None in none.
+    fn count(&self, positions: &[[f64; D]]) -> Option<(usize, String)> {
+        let found: Vec<&str> = positions.iter().filter_map(|x| self.of(x)).collect();
+        let names = self.0.iter().map(|(collider, _)| &collider.name);
+        let names: Vec<String> = names
+            .filter(|name| found.contains(&name.as_str()))
+            .map(|name| format!("\"{name}\""))
+            .collect();
+        (!found.is_empty()).then(|| (found.len(), names.join(", ")))
+    }
 }
 
 /// Adds v(x) + G (x − centre of mass) to the velocities, and ∂v/∂x + G to the affine matrices.

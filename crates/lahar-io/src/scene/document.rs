@@ -522,3 +522,31 @@ pub(crate) fn json_table(table: &Table) -> serde_json::Value {
         .map(|entry| (entry.key.clone(), json(&entry.node)))
         .collect()
 }
+
+/// A tree as [`json`] has made it, without places; `None` for what no scene has.
+pub(crate) fn from_json(value: &serde_json::Value) -> Option<Node> {
+    let span = Span::default();
+    let value = match value {
+        serde_json::Value::Null => return None,
+        serde_json::Value::Bool(flag) => Value::Flag(*flag),
+        serde_json::Value::Number(number) => match number.as_i64() {
+            Some(whole) => Value::Integer(whole),
+            None => Value::Number(number.as_f64()?),
+        },
+        serde_json::Value::String(text) => Value::Text(text.clone()),
+        serde_json::Value::Array(list) => Value::List(list.iter().filter_map(from_json).collect()),
+        serde_json::Value::Object(table) => {
+            let entry = |(key, value): (&String, &serde_json::Value)| {
+                Some(Entry {
+                    key: key.clone(),
+                    key_span: span,
+                    node: from_json(value)?,
+                })
+            };
+            Value::Table(Table {
+                entries: table.iter().filter_map(entry).collect(),
+            })
+        }
+    };
+    Some(Node { value, span })
+}

@@ -228,6 +228,8 @@ pub(crate) const SECTIONS: &[&Section] = &[
     &ROD,
     &MESH,
     &COPIES,
+    &COLLIDER,
+    &KEYFRAME,
     &FORCE,
     &CENTRAL,
     &VORTEX,
@@ -402,7 +404,13 @@ pub(crate) static SCENE: Section = Section {
             Value("{}"),
             "What a run writes.",
         ),
-        later("colliders"),
+        key(
+            "colliders",
+            Kind::Tables(&COLLIDER),
+            "",
+            Words("none"),
+            "What material cannot enter, standing or moving: one `[[colliders]]` each.",
+        ),
         key(
             "forces",
             Kind::Tables(&FORCE),
@@ -731,7 +739,7 @@ pub(crate) static FLUID: Section = Section {
                 Kind::OneOf(&[Kind::Number(Bound::Positive), Kind::Word(&["auto"])]),
                 "m/s",
                 Words("\"auto\", unless `bulk_modulus` is given"),
-                "Speed of sound c; `\"auto\"`: ten times the largest speed expected, √(v² + 2gH) with the bodies' largest speed v and their highest point's height H above the floor.",
+                "Speed of sound c; `\"auto\"`: ten times the largest speed expected, √(v² + 2gH) with the largest speed v of bodies and colliders and their highest point's height H above the floor.",
             ),
             key(
                 "bulk_modulus",
@@ -1248,6 +1256,104 @@ pub(crate) static COPIES: Section = Section {
     ]],
 };
 
+pub(crate) static COLLIDER: Section = Section {
+    name: "collider",
+    header: "[[colliders]]",
+    keys: &[&[
+        key(
+            "name",
+            Kind::Text,
+            "",
+            Words("\"collider-N\", N its number from 0"),
+            "Name, for outputs and `--set colliders.NAME.velocity=..`.",
+        ),
+        key(
+            "shape",
+            Kind::Table(&SHAPE),
+            "",
+            Required,
+            "The space it takes, as for bodies: boxes, balls, half-spaces, polygons, cylinders, capsules and unions of them, scaled (balls, cylinders and capsules by one number), turned, moved and repeated.",
+        ),
+        key(
+            "contact",
+            Kind::Word(&["sticky", "slip", "separate"]),
+            "",
+            Value("\"separate\""),
+            "`sticky`: material moves with it; `slip`: none through its surface or away from it; `separate`: none into it, free to leave.",
+        ),
+        key(
+            "friction",
+            Kind::Number(Bound::NotNegative),
+            "",
+            Words("0, with `slip` and `separate` only"),
+            "Coefficient of Coulomb friction.",
+        ),
+        key(
+            "center",
+            Kind::Vector,
+            "m",
+            Words("the middle of its shape; a half-space's point"),
+            "The point that it turns about, that keyframes place, and that its torque is about.",
+        ),
+        key(
+            "velocity",
+            Kind::Vector,
+            "m/s",
+            Words("0"),
+            "Velocity of its center, always on.",
+        ),
+        key(
+            "spin",
+            Kind::Rotation,
+            "rad/s",
+            Words("0"),
+            "Rotation about its center, counter-clockwise.",
+        ),
+        key(
+            "keyframes",
+            Kind::Tables(&KEYFRAME),
+            "",
+            Words("none"),
+            "Where it is when, instead of `velocity` and `spin`: it goes from one to the next at constant speeds, and stays before the first and after the last.",
+        ),
+        key(
+            "color",
+            Kind::Color,
+            "",
+            Words("grey"),
+            "Its colour in windows and pictures.",
+        ),
+    ]],
+};
+
+pub(crate) static KEYFRAME: Section = Section {
+    name: "keyframe",
+    header: "keyframes = [{ .. }, ..] in [[colliders]]",
+    keys: &[&[
+        key(
+            "time",
+            Kind::Number(Bound::Any),
+            "s",
+            Required,
+            "When; later than the keyframe before.",
+        ),
+        key(
+            "position",
+            Kind::Vector,
+            "m",
+            Words("the collider's `center`"),
+            "Where the center is.",
+        ),
+        key(
+            "rotate",
+            Kind::Rotation,
+            "degrees",
+            ByDimension("0.0", "[0.0, 0.0, 0.0]"),
+            "How far it has turned, counter-clockwise; in 3D about the direction of this vector, by its length.",
+        ),
+    ]],
+};
+
 pub(crate) static FORCE: Section = Section {
     name: "force",
     header: "[[forces]]: exactly one besides the name",
@@ -1517,7 +1623,7 @@ pub(crate) static FORCE_PROBE: Section = Section {
         Kind::Text,
         "",
         Required,
-        "A wall of the domain: `left`, `right`, `bottom`, `top`, `back` or `front`.",
+        "A wall of the domain: `left`, `right`, `bottom`, `top`, `back` or `front`; or a collider by its name.",
     )]],
 };
 

@@ -20,6 +20,7 @@
 
 mod build;
 mod check;
+mod colliders;
 mod comparison;
 mod controls;
 mod document;
@@ -36,6 +37,7 @@ mod shapes;
 #[cfg(test)]
 mod tests;
 
+pub use colliders::{ColliderInfo, colliders_of};
 pub use comparison::Comparison;
 pub use controls::Controls;
 pub(crate) use document::shorten;
@@ -173,6 +175,8 @@ pub struct Scene {
     pub materials: Vec<MaterialInfo>,
     /// The bodies, by number.
     pub bodies: Vec<BodyInfo>,
+    /// The colliders, in the order of the scene.
+    pub colliders: Vec<ColliderInfo>,
     /// How to look at it.
     pub camera: Camera,
     /// What keys and mouse do in the window.
@@ -197,6 +201,8 @@ pub struct Built {
     pub simulation: Box<dyn Simulate>,
     /// Particles of each body, by number.
     pub body_particles: Vec<usize>,
+    /// Particles that each body would have where colliders are, by number; they were not made.
+    pub left_out: Vec<usize>,
     /// What is suspicious, the scene's own warnings included.
     pub warnings: Vec<String>,
 }
@@ -296,17 +302,21 @@ impl Scene {
             &[lahar::ParticleBatch<D>],
         ) -> Result<Box<dyn Simulate>, lahar::SetupError>,
     ) -> Result<Built, SceneError> {
-        let batches = plan.batches(self.seed);
+        let mut warnings = self.warnings.clone();
+        let (batches, left_out) = plan.batches(self.seed, &mut warnings);
         for (batch, body) in batches.iter().zip(&plan.bodies) {
             if batch.position.is_empty() {
                 let error = self.error_at(
                     &format!("bodies.{}.shape", body.name),
                     format!("body \"{}\" comes to no particle", body.name),
                 );
-                return Err(error.hint("make the body larger, or dx or spacing smaller"));
+                return Err(error.hint(if plan.colliders.is_empty() {
+                    "make the body larger, or dx or spacing smaller"
+                } else {
+                    "what is inside colliders is left out; make the body larger, or dx or spacing smaller"
+                }));
             }
         }
-        let mut warnings = self.warnings.clone();
         for (first, second, inside) in plan.overlaps(&batches) {
             warnings.push(format!("bodies \"{}\" and \"{}\" overlap: {inside} particles of the second start inside the first", plan.bodies[first].name, plan.bodies[second].name));
         }
@@ -316,6 +326,7 @@ impl Scene {
         Ok(Built {
             simulation,
             body_particles: batches.iter().map(|batch| batch.position.len()).collect(),
+            left_out,
             warnings,
         })
     }
@@ -530,6 +541,7 @@ fn scene<const D: usize>(
             expected_particles,
         })
         .collect();
+    let colliders = colliders::infos(&reader, &plan.colliders);
     Ok(Scene {
         name: name.to_owned(),
         text: text.to_owned(),
@@ -547,6 +559,7 @@ fn scene<const D: usize>(
         seed: reader.integer("seed")?,
         materials,
         bodies,
+        colliders,
         camera: read_camera(&reader, &plan)?,
         controls: controls::read_controls(&reader)?,
         output: read_output(&reader)?,

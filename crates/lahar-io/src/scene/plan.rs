@@ -1,5 +1,6 @@
 //! From a checked document to a plan in numbers of one dimension: domain, materials, bodies.
 
+use super::colliders::read_colliders;
 use super::forces::{expect, lattice, read_forces};
 use super::formula::{Formulas, Of};
 use super::keys::MODULI;
@@ -15,8 +16,8 @@ use lahar::material::{
     VolumeCorrection, VolumeRule, lame,
 };
 use lahar::{
-    Contact, Corners, Cushion, Domain, Force, ForceForm, Kernel, Material, Model, Probe, Sides,
-    TimeStep, Transfer, WallStyle,
+    Collider, Contact, Corners, Cushion, Domain, Force, ForceForm, Kernel, Material, Model, Probe,
+    Sides, TimeStep, Transfer, WallStyle,
 };
 use std::path::Path;
 
@@ -32,6 +33,7 @@ pub(crate) struct Plan<const D: usize> {
     pub(crate) domain: Option<Domain<D>>,
     pub(crate) clamp: Option<Corners<D>>,
     pub(crate) cushion: Option<Cushion<D>>,
+    pub(crate) colliders: Vec<Collider<D>>,
     pub(crate) kernel: Kernel,
     pub(crate) transfer: Transfer,
     pub(crate) force: ForceForm,
@@ -188,6 +190,7 @@ impl<const D: usize> Plan<D> {
             Some(table) => read_keep(&table)?,
             None => (None, None),
         };
+        let colliders = read_colliders(scene, dx, (files, limits), &mut warnings)?;
         let kernel = match scene.text("kernel")? {
             "linear" => Kernel::Linear,
             "cubic" => Kernel::Cubic,
@@ -242,6 +245,7 @@ impl<const D: usize> Plan<D> {
             domain,
             clamp,
             cushion,
+            colliders,
             kernel,
             transfer,
             force,
@@ -272,7 +276,17 @@ impl<const D: usize> Plan<D> {
             None => longest(&Bounds::around(&bounds)),
         };
         let thrown = self.bodies.iter().map(Body::speed).fold(0.0, f64::max);
-        let squared = thrown * thrown + forces.swing * room;
+        let everywhere = Bounds::around(&bounds);
+        let around = match &self.domain {
+            Some(domain) => (domain.min, domain.max),
+            None => (everywhere.min, everywhere.max),
+        };
+        let pushed = self
+            .colliders
+            .iter()
+            .map(|collider| collider.largest_speed(0.0, self.duration, around))
+            .fold(thrown, f64::max);
+        let squared = pushed * pushed + forces.swing * room;
         if g == 0.0 {
             return squared.sqrt();
         }
@@ -425,11 +439,6 @@ impl<const D: usize> Plan<D> {
             }
         }
         self.warnings = warnings;
-    }
-
-    /// Bodies' expected particles, in order.
-    pub(crate) fn expected_particles(&self) -> Vec<f64> {
-        self.bodies.iter().map(Body::expected_particles).collect()
     }
 }
 
@@ -706,7 +715,7 @@ fn read_walls<const D: usize>(domain: &Reader<'_>) -> Result<([Sides; D], WallSt
     Ok((sides, style))
 }
 
-fn contact_word(word: &str) -> Contact {
+pub(super) fn contact_word(word: &str) -> Contact {
     match word {
         "sticky" => Contact::Sticky,
         "slip" => Contact::Slip { friction: 0.0 },

@@ -130,7 +130,7 @@ pub(super) fn read_shape_source<const D: usize>(
 }
 
 /// A shape, `depth` shapes inside others.
-fn read_shape<const D: usize>(
+pub(super) fn read_shape<const D: usize>(
     table: &Reader<'_>,
     files: (&Files<'_>, &Limits),
     depth: usize,

@@ -202,5 +202,5 @@ fn the_schema_names_every_key() {
             assert!(there || matches!(key.kind, Kind::Later), "{}", key.name);
         }
     }
-    assert!(!schema.contains("\"colliders\""));
+    assert!(!schema.contains("\"emitters\""));
 }

@@ -2,6 +2,7 @@
 
 mod mesh;
 mod motion;
+mod solids;
 mod volume;
 
 pub use mesh::{Mesh, MeshError};

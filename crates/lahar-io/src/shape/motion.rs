@@ -69,6 +69,11 @@ impl<const D: usize> Motion<D> {
         self.scale.iter().all(|s| *s == first).then_some(first)
     }
 
+    /// The factors along the axes.
+    pub(super) fn factors(&self) -> [f64; D] {
+        self.scale
+    }
+
     /// Whether it turns anything.
     pub(super) fn turns(&self) -> bool {
         (0..D).any(|i| (0..D).any(|j| self.rotation[i][j] != f64::from(u8::from(i == j))))

@@ -148,7 +148,7 @@ impl Contact {
 
 /// `velocity` made shorter by `taken` \[m/s\], or zero if it is not that long.
 #[inline(always)]
-fn slowed<T: Scalar, const D: usize>(velocity: Vector<T, D>, taken: T) -> Vector<T, D> {
+pub(crate) fn slowed<T: Scalar, const D: usize>(velocity: Vector<T, D>, taken: T) -> Vector<T, D> {
     let speed = velocity.norm();
     let kept = if speed > taken {
         (speed - taken) / speed

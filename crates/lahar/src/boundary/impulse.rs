@@ -7,11 +7,13 @@ use crate::math::Vector;
 /// is the only one that is not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundaryImpulse {
-    /// A side of the domain by its name in scenes: "left", "right", "bottom", "top", "back", "front".
+    /// A side of the domain by its name in scenes ("left", "right", "bottom", "top", "back", "front"), or
+    /// a collider by its own.
     pub name: String,
     /// ∫ F dt, with F the force of the material on it \[N s; N s/m in 2D\].
     pub impulse: [f64; 3],
-    /// ∫ x × F dt about the coordinates' origin \[N m s; N s in 2D\].
+    /// ∫ x × F dt \[N m s; N s in 2D\]: about the coordinates' origin for a side, about where its centre
+    /// is at the time for a collider.
     pub angular_impulse: [f64; 3],
 }
 

@@ -1,11 +1,16 @@
 //! What stops the material: contact laws × shapes, as plain data.
 
+pub(crate) mod collider;
 pub(crate) mod contact;
 pub(crate) mod impulse;
 pub(crate) mod pointer;
+mod solid;
+pub(crate) mod surface;
 pub(crate) mod walls;
 
+pub use collider::{Collider, Keyframe, Motion, Placed};
 pub use impulse::BoundaryImpulse;
+pub use solid::Solid;
 
 /// The box that holds a scene.
 #[derive(Clone, Debug, PartialEq)]

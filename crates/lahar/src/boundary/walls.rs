@@ -260,7 +260,7 @@ impl<const D: usize> Walls<D> {
                 velocity = end.contact.constrain(free, axis, inward);
                 let change = Vector::from_fn(|i| (velocity[i] - free[i]).to_f64());
                 let at = node.map(|node| node as f64);
-                taken[side(axis, inward < 0.0)].add(at, change * -mass.to_f64()); // (12)
+                taken[side(axis, inward < 0.0)].add(at, change * -mass.to_f64()); // (13)
             }
         }
         velocity
@@ -272,6 +272,18 @@ impl<const D: usize> Walls<D> {
         self.planes
             .iter()
             .any(|wall| (node[wall.axis] - wall.node) * i64::from(wall.inward) < 0)
+    }
+
+    /// Whether a wall on its plane has any of the nodes `first .. first + edge` beyond it.
+    pub(crate) fn passes(&self, first: [i64; D], edge: i64) -> bool {
+        self.planes.iter().any(|plane| {
+            let first = first[plane.axis];
+            if plane.inward > 0 {
+                first < plane.node
+            } else {
+                first + edge - 1 > plane.node
+            }
+        })
     }
 
     /// `node` on its periodic axes brought into 0 .. period.

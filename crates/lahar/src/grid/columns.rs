@@ -94,7 +94,7 @@ impl<const D: usize> Columns<D> {
                     });
                     let mut at = places.node.map(f64::from);
                     at[wall.axis] += f64::from(wall.inward) * f64::from(step);
-                    taken.add(at, change * -masses[k]); // (12)
+                    taken.add(at, change * -masses[k]); // (13)
                 }
             }
         }

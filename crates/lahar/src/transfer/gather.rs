@@ -2,7 +2,10 @@
 
 use super::scatter::{split_runs, stencil};
 use super::{LARGEST_TILE, Scheme, Stage, rows, with_scheme};
+use crate::boundary::collider::Moving;
+use crate::boundary::impulse::Taken;
 use crate::boundary::pointer::Push;
+use crate::boundary::surface::put_out;
 use crate::boundary::walls::Walls;
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::BSpline;
@@ -11,7 +14,7 @@ use crate::math::{Lanes, Mask, Matrix, Real, Vector};
 use crate::parallel;
 use crate::setup::Transfer;
 use crate::sort::in_range;
-use crate::store::{ColumnsMut, Group, Layout, Run, block_edge};
+use crate::store::{ColumnsMut, Group, Layout, PerParticle, Run, block_edge};
 use fearless_simd::Simd;
 
 /// What a gather found out, for the next time step and for the sort.
@@ -57,37 +60,55 @@ impl Bounds {
 /// by more than one.
 pub(crate) const MOST_CELLS: f64 = 100.0;
 
+/// What acts on particles besides the grid.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around<'a, const D: usize> {
+    pub(crate) walls: &'a Walls<D>,
+    pub(crate) push: Option<&'a Push<D>>,
+    pub(crate) colliders: &'a [Moving<D>],
+}
+
 /// Moves the particles of `group` with the grid's velocities.
 pub(crate) fn gather<T: Lanes, const D: usize>(
     group: &mut Group<T, D>,
     grid: &Grid<T, D>,
-    walls: &Walls<D>,
-    push: Option<&Push<D>>,
+    around: Around<'_, D>,
     scheme: Scheme,
     isa: IsaToken,
     dt: f64,
-) -> Bounds {
+) -> (Bounds, Vec<Taken<D>>) {
     let grain = parallel::grain(group.len(), 4096);
     let Group {
-        law, columns, runs, ..
+        law,
+        columns,
+        runs,
+        mass,
+        ..
     } = group;
     let task = Task {
         law: law.as_ref(),
         grid,
-        walls,
-        push,
+        mass,
+        around,
         scheme,
         isa,
         dt,
     };
-    task.halve(runs, 0, ColumnsMut::new(columns), grain)
+    let mut by_run = vec![Taken::NOTHING; runs.len() * around.colliders.len()];
+    let bounds = task.halve(runs, 0, ColumnsMut::new(columns), &mut by_run, grain);
+    // Run after run: the order of sums does not depend on threads.
+    let mut taken = vec![Taken::NOTHING; around.colliders.len()];
+    for (index, of_run) in by_run.iter().enumerate() {
+        taken[index % around.colliders.len()].add_scaled(of_run, 1.0, [0.0; D]);
+    }
+    (bounds, taken)
 }
 
 struct Task<'a, T: Lanes, const D: usize> {
     law: &'a dyn crate::material::Law<T, D>,
     grid: &'a Grid<T, D>,
-    walls: &'a Walls<D>,
-    push: Option<&'a Push<D>>,
+    mass: &'a PerParticle<T>,
+    around: Around<'a, D>,
     scheme: Scheme,
     isa: IsaToken,
     dt: f64,
@@ -100,6 +121,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         runs: &[Run<D>],
         first_row: usize,
         columns: ColumnsMut<'_, T>,
+        taken: &mut [Taken<D>],
         grain: usize,
     ) -> Bounds {
         let Some((middle, row)) = split_runs(runs, grain) else {
@@ -108,17 +130,22 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
             let mut tile = [T::default(); LARGEST_TILE];
             let mut columns = columns;
             let mut bounds = Bounds::NONE;
-            for run in runs {
+            for (index, run) in runs.iter().enumerate() {
                 self.grid.load_tile(run.tile as usize, &mut tile);
-                bounds = bounds.and(self.block(run, first_row, &tile, &mut columns, &mut stage));
+                let mut found = self.block(run, first_row, &tile, &mut columns, &mut stage);
+                let of_run = &mut taken[index * self.around.colliders.len()..]
+                    [..self.around.colliders.len()];
+                self.put_out(run, first_row, &mut columns, of_run, &mut found);
+                bounds = bounds.and(found);
             }
             return bounds;
         };
         let (low, high) = runs.split_at(middle);
         let (low_columns, high_columns) = columns.split_at(row - first_row);
+        let (low_taken, high_taken) = taken.split_at_mut(middle * self.around.colliders.len());
         let (a, b) = parallel::join(
-            || self.halve(low, first_row, low_columns, grain),
-            || self.halve(high, row, high_columns, grain),
+            || self.halve(low, first_row, low_columns, low_taken, grain),
+            || self.halve(high, row, high_columns, high_taken, grain),
         );
         a.and(b)
     }
@@ -168,15 +195,63 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
 
     /// The hand as this block's particles see it.
     fn push(&self, run: &Run<D>) -> Option<Push<D>> {
-        let push = self.push?;
+        let push = self.around.push?;
         let edge = block_edge(D) as f64;
         let middle = |block| edge * (f64::from(block) + 0.5) + self.scheme.offset();
         Some(push.seen_from(run.block.map(middle)))
     }
 
+    /// Puts the particles of `run` that are inside a collider on its surface.
+    fn put_out(
+        &self,
+        run: &Run<D>,
+        first_row: usize,
+        columns: &mut ColumnsMut<'_, T>,
+        taken: &mut [Taken<D>],
+        bounds: &mut Bounds,
+    ) {
+        let edge = block_edge(D) as f64;
+        let middle = run
+            .block
+            .map(|b| edge * (f64::from(b) + 0.5) + self.scheme.offset());
+        // Particles may be a cell out of their block, and have moved once more.
+        let reach = (0.5 * edge + 1.0 + bounds.moved) * (D as f64).sqrt();
+        let is_near = |collider: &Moving<D>| collider.end.distance(middle).0 <= reach;
+        if !self.around.colliders.iter().any(is_near) {
+            return;
+        }
+        let mut farthest = 0.0_f64;
+        for row in run.rows() {
+            let at = row - first_row;
+            let stored: [f64; D] = core::array::from_fn(|axis| columns.slices[axis][at].to_f64());
+            let mut x = Vector(stored);
+            let mut v =
+                Vector::from_fn(|axis| columns.slices[Layout::velocity(D) + axis][at].to_f64());
+            let mass = self.mass.get(row).to_f64();
+            let was_inside = put_out(
+                self.around.colliders,
+                &self.around.walls.hold,
+                middle,
+                (&mut x, &mut v),
+                self.scheme.dx,
+                |number, at, change| taken[number].add(at.0, change * -mass), // (13)
+            );
+            if !was_inside {
+                continue;
+            }
+            bounds.speed_squared = bounds.speed_squared.max(v.dot(v));
+            for axis in 0..D {
+                farthest = farthest.max((x[axis] - stored[axis]).abs());
+                columns.slices[axis][at] = T::from_f64(x[axis]);
+                columns.slices[Layout::velocity(D) + axis][at] = T::from_f64(v[axis]);
+            }
+        }
+        bounds.moved += farthest;
+    }
+
     /// The cushion as this block's particles see it.
     fn cushion(&self, run: &Run<D>) -> Option<([(T, T); D], T)> {
-        let cushion = self.walls.cushion.as_ref()?;
+        let cushion = self.around.walls.cushion.as_ref()?;
         let edge = block_edge(D) as f64;
         let range = core::array::from_fn(|axis| {
             let middle = edge * (f64::from(run.block[axis]) + 0.5) + self.scheme.offset();
@@ -195,7 +270,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         let mut near = false;
         let range = core::array::from_fn(|axis| {
             let middle = edge * (f64::from(run.block[axis]) + 0.5) + offset;
-            let (low, high) = self.walls.hold[axis];
+            let (low, high) = self.around.walls.hold[axis];
             let (low, high) = (
                 low.map_or(f64::NEG_INFINITY, |x| x - middle),
                 high.map_or(f64::INFINITY, |x| x - middle),

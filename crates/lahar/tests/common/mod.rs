@@ -6,8 +6,8 @@ use lahar::material::{
 };
 use lahar::particles::{Data, Field, Snapshot};
 use lahar::{
-    Contact, Corners, Cushion, Domain, Material, Model, ParticleBatch, Setup, Sides, Simulate,
-    Simulation, TimeStep, WallStyle,
+    Collider, Contact, Corners, Cushion, Domain, Keyframe, Material, Model, Motion, ParticleBatch,
+    Setup, Sides, Simulate, Simulation, Solid, TimeStep, WallStyle,
 };
 
 /// A small generator of even numbers, the same everywhere (splitmix64).
@@ -179,6 +179,77 @@ pub(crate) fn brawl_with_all_options<const D: usize>(
     });
     (setup, batches)
 }
+
+/// Several colliders, of every shape and some in each other, moving in all ways, with `contact`.
+pub(crate) fn crowd<const D: usize>(size: f64, contact: Contact) -> Vec<Collider<D>> {
+    // Rounded to what can be said exactly even far away.
+    let exact = |x: f64| (size * x * 1024.0).round() / 1024.0;
+    let place = |x: f64, y: f64| -> [f64; D] { core::array::from_fn(|i| exact([x, y, 0.5][i])) };
+    let along = |i: usize| core::array::from_fn(|j| f64::from(i == j));
+    let axes: [[f64; D]; D] = core::array::from_fn(along);
+    let slope: [f64; D] = core::array::from_fn(|i| [0.6, 0.8, 0.0][i]);
+    let paddle = Solid::Box {
+        center: place(0.5, 0.3),
+        half: core::array::from_fn(|i| size * [0.3, 0.07, 0.2][i]),
+        axes,
+    };
+    let frame = |time, x, y, turn| Keyframe {
+        time,
+        position: place(x, y),
+        turn: [0.0, 0.0, turn],
+    };
+    let ball = Solid::Ball {
+        center: place(0.3, 0.7),
+        radius: 0.13 * size,
+    };
+    let rod = |round| Solid::Rod {
+        from: place(0.62, 0.62),
+        to: place(0.85, 0.7),
+        radius: 0.08 * size,
+        round: round || D == 2,
+    };
+    vec![
+        Collider::still(
+            "slope",
+            vec![Solid::HalfSpace {
+                point: place(0.0, 0.4),
+                normal: slope,
+            }],
+            contact,
+        ),
+        Collider {
+            motion: Motion::Steady {
+                velocity: place(0.1, 0.05),
+                spin: [0.0, 0.0, 6.0],
+            },
+            ..Collider::still("paddle", vec![paddle], contact)
+        },
+        Collider {
+            motion: Motion::Keyframes(vec![
+                frame(0.02, 0.3, 0.7, 0.0),
+                frame(0.07, 0.4, 0.6, 1.0),
+                frame(0.2, 0.2, 0.6, -1.0),
+            ]),
+            ..Collider::still("ball", vec![ball], contact)
+        },
+        Collider::still("rods", vec![rod(true), rod(false)], contact),
+        Collider::still(
+            "wedge",
+            vec![Solid::Polygon {
+                points: vec![place(0.25, 0.0), place(0.5, 0.1), place(0.6, 0.0)],
+            }],
+            contact,
+        ),
+    ]
+}
+
+/// Every law, with friction and without.
+pub(crate) const CONTACTS: [Contact; 4] = [
+    Contact::Sticky,
+    Contact::Slip { friction: 0.0 },
+    Contact::Slip { friction: 0.4 },
+    Contact::Separate { friction: 0.4 },
+];
 
 /// Everything a particle has.
 pub(crate) const ALL: &[Field] = &[

@@ -1,0 +1,248 @@
+//! Colliders as lines: their edges, and in 2D a hatching that fills them.
+
+use lahar::Solid;
+use lahar_io::image::COLLIDER;
+use lahar_io::scene::ColliderInfo;
+
+use crate::camera::{V3, add, scale, sub};
+use crate::renderer::Line;
+
+/// Sides of a circle.
+const SIDES: usize = 48;
+
+/// Distance of the lines of a hatching, in parts of the scene's longer side.
+const HATCHING: f64 = 1.0 / 80.0;
+
+/// The lines of `colliders` at `time` \[s\] in the box `extent` of a scene of `dimension`, relative to
+/// `origin`.
+pub(crate) fn collider_lines(
+    colliders: &[ColliderInfo],
+    time: f64,
+    dimension: usize,
+    extent: (V3, V3),
+    origin: V3,
+) -> Vec<Line> {
+    let mut lines = vec![];
+    for info in colliders {
+        let placed = info.collider.at(time);
+        let [r, g, b] = info.color.unwrap_or(COLLIDER);
+        let mut draw = |a: V3, b_: V3, half_width: f32, opacity: u8| {
+            let local = |p: V3| sub(p, origin).map(|x| x as f32);
+            lines.push(Line {
+                start: local(a),
+                half_width,
+                end: local(b_),
+                colour: [r, g, b, opacity],
+            });
+        };
+        for solid in placed.solids() {
+            for path in outline(&solid, dimension, extent) {
+                for pair in path.windows(2) {
+                    // What is inside of another solid of the same collider is no edge.
+                    let middle = scale(add(pair[0], pair[1]), 0.5);
+                    let (distance, _) = placed.distance(middle);
+                    if distance > -1e-3 * longest(extent) {
+                        draw(pair[0], pair[1], 1.2, 255);
+                    }
+                }
+            }
+        }
+        if dimension == 2 {
+            let inside = |p: V3| placed.distance(p).0 < 0.0;
+            for [a, b_] in hatching(extent, inside) {
+                draw(a, b_, 0.8, 150);
+            }
+        }
+    }
+    lines
+}
+
+fn longest((min, max): (V3, V3)) -> f64 {
+    sub(max, min).into_iter().fold(0.0, f64::max)
+}
+
+/// Slanted lines over the box, where `inside`.
+fn hatching((min, max): (V3, V3), inside: impl Fn(V3) -> bool) -> Vec<[V3; 2]> {
+    let step = HATCHING * longest((min, max));
+    let [width, height, _] = sub(max, min);
+    let mut lines = vec![];
+    for k in 1..((width + height) / step) as usize {
+        // x + y is the same along a line.
+        let sum = k as f64 * step;
+        let (low, high) = ((sum - height).max(0.0), sum.min(width));
+        let place = |x: f64| [min[0] + x, min[1] + sum - x, 0.0];
+        let count = ((high - low) / (0.25 * step)).ceil().max(1.0) as usize;
+        let mut began = None;
+        for i in 0..=count {
+            let at = place(low + (high - low) * i as f64 / count as f64);
+            match (inside(at), began) {
+                (true, None) => began = Some(at),
+                (true, Some(start)) if i == count => lines.push([start, at]),
+                (false, Some(start)) => {
+                    lines.push([start, at]);
+                    began = None;
+                }
+                _ => {}
+            }
+        }
+    }
+    lines
+}
+
+/// Edges of a solid, as paths.
+fn outline(solid: &Solid<3>, dimension: usize, extent: (V3, V3)) -> Vec<Vec<V3>> {
+    match solid {
+        Solid::Box { center, half, axes } => {
+            let corner = |bits: usize| {
+                (0..dimension).fold(*center, |at, i| {
+                    let way = if bits >> i & 1 == 1 { 1.0 } else { -1.0 };
+                    add(at, scale(axes[i], way * half[i]))
+                })
+            };
+            let mut edges = vec![];
+            for bits in 0..1_usize << dimension {
+                for axis in 0..dimension {
+                    if bits >> axis & 1 == 0 {
+                        edges.push(divided(corner(bits), corner(bits | 1 << axis)));
+                    }
+                }
+            }
+            edges
+        }
+        Solid::Ball { center, radius } => {
+            let unit = |i: usize| core::array::from_fn(|j| f64::from(i == j));
+            let planes: &[(usize, usize)] = if dimension == 2 {
+                &[(0, 1)]
+            } else {
+                &[(0, 1), (1, 2), (2, 0)]
+            };
+            planes
+                .iter()
+                .map(|&(i, j)| circle(*center, unit(i), unit(j), *radius))
+                .collect()
+        }
+        Solid::HalfSpace { point, normal } => {
+            let [side, other] = across(*normal, dimension);
+            let reach = longest(extent) * 3.0;
+            let corners: Vec<V3> = if dimension == 2 {
+                vec![
+                    add(*point, scale(side, -reach)),
+                    add(*point, scale(side, reach)),
+                ]
+            } else {
+                [
+                    (1.0, 1.0),
+                    (1.0, -1.0),
+                    (-1.0, -1.0),
+                    (-1.0, 1.0),
+                    (1.0, 1.0),
+                ]
+                .iter()
+                .map(|(a, b)| add(*point, add(scale(side, a * reach), scale(other, b * reach))))
+                .collect()
+            };
+            within(&corners, extent)
+        }
+        Solid::Polygon { points } => (0..points.len())
+            .map(|i| divided(points[i], points[(i + 1) % points.len()]))
+            .collect(),
+        Solid::Rod {
+            from,
+            to,
+            radius,
+            round,
+        } => {
+            let axis = sub(*to, *from);
+            let [side, other] = across(axis, dimension);
+            let sides: Vec<V3> = if dimension == 2 {
+                vec![side, scale(side, -1.0)]
+            } else {
+                vec![side, other, scale(side, -1.0), scale(other, -1.0)]
+            };
+            let mut paths: Vec<Vec<V3>> = sides
+                .iter()
+                .map(|side| {
+                    let out = scale(*side, *radius);
+                    divided(add(*from, out), add(*to, out))
+                })
+                .collect();
+            let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let along = if length > 0.0 {
+                scale(axis, 1.0 / length)
+            } else {
+                other
+            };
+            for end in [*from, *to] {
+                if dimension == 3 {
+                    paths.push(circle(end, side, other, *radius));
+                }
+                if *round {
+                    paths.push(circle(end, side, along, *radius));
+                    if dimension == 3 {
+                        paths.push(circle(end, other, along, *radius));
+                    }
+                }
+            }
+            paths
+        }
+    }
+}
+
+/// A segment in pieces, so that parts of it can be left out.
+fn divided(a: V3, b: V3) -> Vec<V3> {
+    (0..=SIDES)
+        .map(|i| add(a, scale(sub(b, a), i as f64 / SIDES as f64)))
+        .collect()
+}
+
+fn circle(center: V3, x: V3, y: V3, radius: f64) -> Vec<V3> {
+    (0..=SIDES)
+        .map(|i| {
+            let (sin, cos) = (core::f64::consts::TAU * i as f64 / SIDES as f64).sin_cos();
+            add(center, add(scale(x, radius * cos), scale(y, radius * sin)))
+        })
+        .collect()
+}
+
+/// Two unit vectors across `axis`; in 2D the first lies in the plane.
+fn across(axis: V3, dimension: usize) -> [V3; 2] {
+    let cross = |a: V3, b: V3| {
+        [
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    };
+    let unit = |v: V3| {
+        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        scale(v, 1.0 / length.max(f64::MIN_POSITIVE))
+    };
+    let helper = if dimension == 2 || axis[2].abs() < axis[0].abs().max(axis[1].abs()) {
+        [0.0, 0.0, 1.0]
+    } else {
+        [1.0, 0.0, 0.0]
+    };
+    if axis == [0.0; 3] {
+        return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    }
+    let side = unit(cross(axis, helper));
+    [side, unit(cross(axis, side))]
+}
+
+/// The part of a path that is in the box.
+fn within(path: &[V3], (min, max): (V3, V3)) -> Vec<Vec<V3>> {
+    let inside = |p: &V3| (0..3).all(|i| (min[i] - 1e-9..=max[i] + 1e-9).contains(&p[i]));
+    let fine: Vec<V3> = path
+        .windows(2)
+        .flat_map(|pair| {
+            (0..=20 * SIDES).map(|i| {
+                let part = i as f64 / (20 * SIDES) as f64;
+                add(pair[0], scale(sub(pair[1], pair[0]), part))
+            })
+        })
+        .collect();
+    fine.split(|p| !inside(p))
+        .filter(|piece| piece.len() > 1)
+        .map(<[V3]>::to_vec)
+        .collect()
+}

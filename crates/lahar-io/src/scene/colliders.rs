@@ -1,0 +1,296 @@
+//! Colliders, as scenes write them.
+
+use super::Limits;
+use super::document::{Sources, Span, Value, from_json};
+use super::files::Files;
+use super::plan::contact_word;
+use super::read::Reader;
+use super::shapes::read_shape;
+use crate::error::SceneError;
+use crate::shape::Shape;
+use lahar::{Collider, Contact, Keyframe, Motion, Solid};
+
+/// Names that sides of the domain have.
+const SIDES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
+
+/// A collider, for outlets.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColliderInfo {
+    /// Its name.
+    pub name: String,
+    /// Its colour, if the scene gives it one.
+    pub color: Option<[u8; 3]>,
+    /// What it is, in three dimensions: in 2D without end along z.
+    pub collider: Collider<3>,
+}
+
+impl ColliderInfo {
+    /// What it is, in a few words.
+    pub fn words(&self) -> String {
+        let Collider {
+            solids,
+            contact,
+            motion,
+            ..
+        } = &self.collider;
+        let kind = |solid: &Solid<3>| match solid {
+            Solid::Box { .. } => "box",
+            Solid::Ball { .. } => "ball",
+            Solid::HalfSpace { .. } => "half-space",
+            Solid::Polygon { .. } => "polygon",
+            Solid::Rod { round: true, .. } => "capsule",
+            Solid::Rod { round: false, .. } => "cylinder",
+        };
+        let shape = match &solids[..] {
+            [one] => kind(one).to_owned(),
+            all => format!("{} solids", all.len()),
+        };
+        let (contact, friction) = match contact {
+            Contact::Sticky => ("sticky", 0.0),
+            Contact::Slip { friction } => ("slip", *friction),
+            Contact::Separate { friction } => ("separate", *friction),
+            Contact::Open => ("open", 0.0),
+        };
+        let friction = if friction > 0.0 {
+            format!(" with friction {friction}")
+        } else {
+            String::new()
+        };
+        let motion = match motion {
+            Motion::Still => "standing",
+            Motion::Steady { .. } => "moving",
+            Motion::Keyframes(_) => "moving by keyframes",
+        };
+        format!("{shape}, {contact}{friction}, {motion}")
+    }
+}
+
+pub(super) fn read_colliders<const D: usize>(
+    scene: &Reader<'_>,
+    dx: f64,
+    files: (&Files<'_>, &Limits),
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Collider<D>>, SceneError> {
+    let mut colliders: Vec<Collider<D>> = Vec::new();
+    for (index, (_, table)) in scene.tables("colliders").into_iter().enumerate() {
+        let collider = read_collider(index, &table, files)?;
+        let name = &collider.name;
+        if SIDES.contains(&name.as_str()) {
+            let message = format!("\"{name}\" is a side of the domain");
+            return Err(table
+                .error_at("name", message)
+                .hint("call the collider something else"));
+        }
+        if colliders.iter().any(|other| other.name == *name) {
+            return Err(table.error_at("name", format!("two colliders are called \"{name}\"")));
+        }
+        let thin = collider
+            .solids
+            .iter()
+            .filter_map(Solid::thickness)
+            .fold(f64::INFINITY, f64::min);
+        if thin < 2.0 * dx {
+            warnings.push(format!("collider \"{name}\" is {thin:.4} m thin, less than two cells: what is on its two sides feels each other through it"));
+        }
+        colliders.push(collider);
+    }
+    Ok(colliders)
+}
+
+fn read_collider<const D: usize>(
+    index: usize,
+    table: &Reader<'_>,
+    files: (&Files<'_>, &Limits),
+) -> Result<Collider<D>, SceneError> {
+    let name = table
+        .opt_text("name")
+        .map_or_else(|| format!("collider-{index}"), str::to_owned);
+    let Some(shape) = table.opt_table("shape") else {
+        return Err(table.error(format!("collider \"{name}\" has no shape")));
+    };
+    let shape: Shape<D> = read_shape(&shape, files, 0)?;
+    let solids = shape.solids().map_err(|what| {
+        table
+            .error_at("shape", format!("a collider cannot be a {what} yet"))
+            .hint("boxes, balls, half-spaces, polygons, cylinders, capsules and unions of them are possible, and scale by one number, rotate, translate, copies")
+    })?;
+    let mut contact = contact_word(table.text("contact")?);
+    if let Some(given) = table.opt_number("friction") {
+        match &mut contact {
+            Contact::Slip { friction } | Contact::Separate { friction } => *friction = given,
+            Contact::Sticky | Contact::Open => {
+                return Err(table
+                    .error_at_key("friction", "friction is for \"slip\" and \"separate\" only"));
+            }
+        }
+    }
+    let center = match table.opt_vector("center") {
+        Some(center) => center,
+        None => middle(&shape, &solids),
+    };
+    Ok(Collider {
+        name,
+        solids,
+        contact,
+        center,
+        motion: read_motion(table, center)?,
+    })
+}
+
+/// The middle of the shape's bounds; a half-space's point where it has none.
+fn middle<const D: usize>(shape: &Shape<D>, solids: &[Solid<D>]) -> [f64; D] {
+    let bounds = shape.bounds();
+    let has_end = (0..D).all(|i| bounds.min[i].is_finite() && bounds.max[i].is_finite());
+    match solids.first() {
+        Some(first) if !has_end => first.center(),
+        _ => bounds.middle(),
+    }
+}
+
+fn read_motion<const D: usize>(
+    table: &Reader<'_>,
+    center: [f64; D],
+) -> Result<Motion<D>, SceneError> {
+    let tables = table.tables("keyframes");
+    if tables.is_empty() {
+        let velocity = table.opt_vector("velocity").unwrap_or([0.0; D]);
+        let spin = turn(table, "spin");
+        return Ok(if velocity == [0.0; D] && spin == [0.0; 3] {
+            Motion::Still
+        } else {
+            Motion::Steady { velocity, spin }
+        });
+    }
+    if let Some(key) = ["velocity", "spin"].into_iter().find(|key| table.has(key)) {
+        return Err(table
+            .error_at_key(
+                key,
+                format!("\"{key}\" and \"keyframes\" both say how it moves"),
+            )
+            .hint("give one of them"));
+    }
+    let mut frames: Vec<Keyframe<D>> = Vec::new();
+    for (_, frame) in tables {
+        let time = frame.number("time")?;
+        if let Some(before) = frames.last()
+            && time <= before.time
+        {
+            let message = format!(
+                "time {time} is not after the keyframe before, {}",
+                before.time
+            );
+            return Err(frame
+                .error_at("time", message)
+                .hint("keyframes are in the order of time"));
+        }
+        frames.push(Keyframe {
+            time,
+            position: frame.opt_vector("position").unwrap_or(center),
+            turn: turn(&frame, "rotate").map(f64::to_radians),
+        });
+    }
+    Ok(Motion::Keyframes(frames))
+}
+
+/// A number in 2D, three in 3D.
+fn turn(table: &Reader<'_>, key: &str) -> [f64; 3] {
+    table
+        .opt_vector::<3>(key)
+        .unwrap_or_else(|| [0.0, 0.0, table.opt_number(key).unwrap_or(0.0)])
+}
+
+/// The colliders of a scene that was read before, from what [`super::Scene::resolved`] said of it;
+/// none where it says nothing that can be understood.
+pub fn colliders_of(resolved: &serde_json::Value) -> Vec<ColliderInfo> {
+    let sources = Sources::default();
+    let Some(Value::Table(root)) = from_json(resolved).map(|node| node.value) else {
+        return Vec::new();
+    };
+    let scene = Reader::new(&sources, &root, Span::default());
+    let files = (&Files::Embedded(&[]), &Limits::default());
+    let read = if scene.opt_integer("dimension") == Some(3) {
+        read_colliders::<3>(&scene, 0.0, files, &mut Vec::new()).map(|all| infos(&scene, &all))
+    } else {
+        read_colliders::<2>(&scene, 0.0, files, &mut Vec::new()).map(|all| infos(&scene, &all))
+    };
+    read.unwrap_or_default()
+}
+
+/// For outlets.
+pub(super) fn infos<const D: usize>(
+    scene: &Reader<'_>,
+    colliders: &[Collider<D>],
+) -> Vec<ColliderInfo> {
+    colliders
+        .iter()
+        .zip(scene.tables("colliders"))
+        .map(|(collider, (_, table))| ColliderInfo {
+            name: collider.name.clone(),
+            color: table.opt_color("color"),
+            collider: in_space(collider),
+        })
+        .collect()
+}
+
+/// A collider as it is in space: in 2D without end along z.
+fn in_space<const D: usize>(collider: &Collider<D>) -> Collider<3> {
+    let three = |v: [f64; D]| core::array::from_fn(|i| if i < D { v[i] } else { 0.0 });
+    let solid = |solid: &Solid<D>| match solid {
+        Solid::Box { center, half, axes } => Solid::Box {
+            center: three(*center),
+            half: core::array::from_fn(|i| if i < D { half[i] } else { f64::INFINITY }),
+            axes: core::array::from_fn(|i| {
+                if i < D {
+                    three(axes[i])
+                } else {
+                    core::array::from_fn(|j| f64::from(i == j))
+                }
+            }),
+        },
+        Solid::Ball { center, radius } => Solid::Ball {
+            center: three(*center),
+            radius: *radius,
+        },
+        Solid::HalfSpace { point, normal } => Solid::HalfSpace {
+            point: three(*point),
+            normal: three(*normal),
+        },
+        Solid::Rod {
+            from,
+            to,
+            radius,
+            round,
+        } => Solid::Rod {
+            from: three(*from),
+            to: three(*to),
+            radius: *radius,
+            round: *round,
+        },
+        Solid::Polygon { points } => Solid::Polygon {
+            points: points.iter().copied().map(three).collect(),
+        },
+    };
+    Collider {
+        name: collider.name.clone(),
+        solids: collider.solids.iter().map(solid).collect(),
+        contact: collider.contact,
+        center: three(collider.center),
+        motion: match &collider.motion {
+            Motion::Still => Motion::Still,
+            Motion::Steady { velocity, spin } => Motion::Steady {
+                velocity: three(*velocity),
+                spin: *spin,
+            },
+            Motion::Keyframes(frames) => Motion::Keyframes(
+                frames
+                    .iter()
+                    .map(|frame| Keyframe {
+                        time: frame.time,
+                        position: three(frame.position),
+                        turn: frame.turn,
+                    })
+                    .collect(),
+            ),
+        },
+    }
+}

@@ -1,0 +1,438 @@
+//! Colliders: a surface between nodes is where it is drawn, takes what the material loses, lets go of
+//! what leaves, and is not passed.
+
+#[expect(dead_code, reason = "the checks of bits use the rest")]
+mod common;
+
+use common::{CONTACTS, ball, brawl, crowd, one_of_each};
+use lahar::material::{Corotated, Fluid, lame};
+use lahar::particles::Field;
+use lahar::{
+    Collider, Contact, Deformation, Domain, Instance, Material, Model, Motion, ParticleBatch,
+    Setup, Sides, Simulate, Simulation, Solid, TimeStep, Transfer, WallStyle,
+};
+
+const DENSITY: f64 = 1000.0; // kg/m³
+const G: f64 = 9.81; // m/s²
+const SLIP: Contact = Contact::Slip { friction: 0.0 };
+const SEPARATE: Contact = Contact::Separate { friction: 0.0 };
+
+fn both(contact: Contact) -> Sides {
+    Sides::Walls {
+        low: contact,
+        high: contact,
+    }
+}
+
+fn field<const D: usize>(simulation: &impl Simulate, field: Field) -> Vec<[f64; D]> {
+    let snapshot = simulation.snapshot(&[field]);
+    let numbers = snapshot.columns[0].1.to_f64();
+    numbers.as_chunks().0.to_vec()
+}
+
+fn fluid(sound_speed: f64) -> Material {
+    Material {
+        name: "fluid".into(),
+        density: DENSITY,
+        model: Model::Fluid(Fluid {
+            tension: 0.0,
+            ..Fluid::inviscid(DENSITY * sound_speed * sound_speed)
+        }),
+    }
+}
+
+/// A tank 1 m wide whose floor is a half-space through (.5, height) with slope `angle`, filled to
+/// .5 m above, at rest under its pressure; and its mass.
+fn tank(dx: f64, height: f64, angle: f64, floor: Contact) -> (Setup<2>, ParticleBatch<2>) {
+    let sound_speed = 30.0;
+    let normal = [-angle.sin(), angle.cos()];
+    let surface = height + 0.5;
+    let mut setup = Setup {
+        gravity: [0.0, -G],
+        domain: Some(Domain {
+            min: [0.0; 2],
+            max: [1.0, 1.5],
+            sides: [both(SEPARATE); 2],
+            style: WallStyle::Plane,
+        }),
+        ..Setup::new(dx, vec![fluid(sound_speed)])
+    };
+    setup.colliders = vec![Collider::still(
+        "floor",
+        vec![Solid::HalfSpace {
+            point: [0.5, height],
+            normal,
+        }],
+        floor,
+    )];
+    let step = dx / 2.0;
+    let mut batch = ParticleBatch::default();
+    let n = (1.0 / step).round() as usize;
+    for i in 0..n {
+        let x = (i as f64 + 0.5) * step;
+        let bottom = height + (x - 0.5) * angle.tan();
+        let rows = ((surface - bottom) / step).round() as usize;
+        for j in 0..rows {
+            let y = surface - (j as f64 + 0.5) * (surface - bottom) / rows as f64;
+            batch.position.push([x, y]);
+            batch.volume.push(step * (surface - bottom) / rows as f64);
+        }
+    }
+    let jacobian = |x: &[f64; 2]| (-G * (surface - x[1]) / (sound_speed * sound_speed)).exp();
+    batch.deformation = Deformation::Jacobian(batch.position.iter().map(jacobian).collect());
+    (setup, batch)
+}
+
+/// What a tank at rest shows after some seconds: force on the floor over the weight, mean height of the
+/// particles over what it was, how far the lowest is from the floor in cells, and the largest speed over
+/// √(gH).
+struct Rest {
+    force: [f64; 2],
+    height: f64,
+    gap: f64,
+    speed: f64,
+}
+
+fn rest(dx: f64, height: f64, angle: f64, floor: Contact) -> Rest {
+    let (setup, batch) = tank(dx, height, angle, floor);
+    let mean = |p: &[[f64; 2]]| p.iter().map(|x| x[1]).sum::<f64>() / p.len() as f64;
+    let before = mean(&batch.position) - height;
+    let mut simulation = Simulation::<f32, 2>::new(setup, &[batch]).unwrap();
+    let weight = simulation.diagnostics().mass * G;
+    let on_floor = |simulation: &mut Simulation<f32, 2>, time| {
+        simulation.advance_to(time).unwrap();
+        let floor = simulation.boundary_impulses().pop().unwrap();
+        assert_eq!(floor.name, "floor");
+        floor.impulse
+    };
+    let early = on_floor(&mut simulation, 0.5);
+    let late = on_floor(&mut simulation, 1.5);
+    let end = field::<2>(&simulation, Field::Position);
+    let above = |x: &[f64; 2]| (x[1] - height) * angle.cos() - (x[0] - 0.5) * angle.sin();
+    Rest {
+        force: [0, 1].map(|axis| (late[axis] - early[axis]) / weight),
+        height: (mean(&end) - height) / before,
+        gap: end.iter().map(above).fold(f64::INFINITY, f64::min) / dx,
+        speed: field::<2>(&simulation, Field::Velocity)
+            .iter()
+            .map(|v| v[0].hypot(v[1]))
+            .fold(0.0, f64::max)
+            / (G * 0.5_f64).sqrt(),
+    }
+}
+
+/// Wherever a level floor lies between nodes, water rests on it as on a wall on its plane: .0, .3, .5
+/// and .8 of a cell above one.
+#[test]
+fn a_floor_between_nodes_carries_a_tank() {
+    for height in [0.25, 0.265, 0.275, 0.29] {
+        for contact in [SLIP, SEPARATE, Contact::Sticky] {
+            let found = rest(0.05, height, 0.0, contact);
+            let at = format!("{height} {contact:?}");
+            assert!(
+                (found.force[1] + 1.0).abs() < 1e-4,
+                "{at}: {:?}",
+                found.force
+            );
+            assert!(found.force[0].abs() < 1e-4, "{at}: {:?}", found.force);
+            assert!((found.height - 1.0).abs() < 1e-4, "{at}: {}", found.height);
+            assert!((found.gap - 0.25).abs() < 1e-3, "{at}: {} cells", found.gap);
+            assert!(found.speed < 1e-3, "{at}: {} √(gH)", found.speed);
+        }
+    }
+}
+
+/// On a slope the water's rows do not follow the floor: what is left is of the size of the steps that
+/// particles of one row make.
+#[test]
+fn a_sloping_floor_carries_a_tank() {
+    for (angle, height, force) in [(0.2, 2e-3, 5e-3), (0.5, 1e-2, 2e-2)] {
+        for contact in [SLIP, SEPARATE, Contact::Sticky] {
+            let found = rest(0.05, 0.45, angle, contact);
+            let at = format!("{angle} {contact:?}");
+            assert!(
+                (found.force[1] + 1.0).abs() < force,
+                "{at}: {:?}",
+                found.force
+            );
+            assert!(
+                (found.height - 1.0).abs() < height,
+                "{at}: {}",
+                found.height
+            );
+            assert!(found.gap > -1e-4, "{at}: {} cells", found.gap);
+            if contact != Contact::Sticky {
+                // Pressure on an inclined floor: its horizontal part over the vertical one is the slope.
+                let slope = -found.force[0] / found.force[1];
+                assert!((slope / angle.tan() - 1.0).abs() < 0.05, "{at}: {slope}");
+            }
+        }
+    }
+}
+
+/// By how much the momentum of the brawl differs from gravity's impulse less what walls and colliders
+/// took, relative to what they took.
+fn imbalance<const D: usize>(cells: usize, contact: Contact, transfer: Transfer) -> f64
+where
+    f64: Instance<D>,
+{
+    let (mut setup, batches) = brawl::<D>(cells);
+    setup.colliders = crowd(setup.dx * cells as f64, contact);
+    setup.transfer = transfer;
+    let dt = 4e-4;
+    setup.time_step = TimeStep::Fixed(dt);
+    let mut simulation = Simulation::<f64, D>::new(setup, &batches).unwrap();
+    let before = simulation.diagnostics();
+    let steps = 250;
+    for _ in 0..steps {
+        simulation.substep().unwrap();
+    }
+    let after = simulation.diagnostics();
+    let boundaries = simulation.boundary_impulses();
+    assert_eq!(boundaries.len(), 2 * D + 5);
+    for collider in &boundaries[2 * D..2 * D + 4] {
+        let touched = collider.impulse.iter().any(|&x| x != 0.0);
+        assert!(touched, "nothing has touched {}", collider.name);
+    }
+    let (mut worst, mut all) = (0.0_f64, 0.0);
+    for axis in 0..D {
+        let taken: f64 = boundaries.iter().map(|b| b.impulse[axis]).sum();
+        all += boundaries
+            .iter()
+            .map(|b| b.impulse[axis].abs())
+            .sum::<f64>();
+        let g = if axis == 1 { -G } else { 0.0 };
+        let given = after.mass * g * dt * f64::from(steps);
+        let gained = after.momentum[axis] - before.momentum[axis];
+        worst = worst.max((gained + taken - given).abs());
+    }
+    worst / all
+}
+
+#[test]
+fn what_colliders_take_is_what_the_material_loses() {
+    for contact in CONTACTS {
+        for transfer in [Transfer::Flip { blend: 0.9 }, Transfer::Apic] {
+            let error = imbalance::<2>(40, contact, transfer);
+            assert!(error < 1e-12, "{contact:?} {transfer:?}: {error:e}");
+        }
+        let error = imbalance::<3>(20, contact, Transfer::Apic);
+        assert!(error < 1e-12, "3D {contact:?}: {error:e}");
+    }
+}
+
+/// How deep the deepest particle is in any collider, in cells, at any time of the brawl.
+fn deepest<T: Instance<D>, const D: usize>(cells: usize, contact: Contact) -> f64 {
+    let (mut setup, batches) = brawl::<D>(cells);
+    let (dx, size) = (setup.dx, setup.dx * cells as f64);
+    setup.colliders = crowd(size, contact);
+    let colliders = setup.colliders.clone();
+    let mut simulation = Simulation::<T, D>::new(setup, &batches).unwrap();
+    let mut deepest = 0.0_f64;
+    while simulation.time() < 0.25 {
+        for _ in 0..10 {
+            simulation.substep().unwrap();
+        }
+        let now: Vec<_> = colliders.iter().map(|c| c.at(simulation.time())).collect();
+        for x in field::<D>(&simulation, Field::Position) {
+            let inside = x.iter().all(|&x| (-1e-9..=size + 1e-9).contains(&x));
+            assert!(inside, "{contact:?}: a particle at {x:?}");
+            for collider in &now {
+                deepest = deepest.max(-collider.distance(x).0 / dx);
+            }
+        }
+    }
+    deepest
+}
+
+#[test]
+fn nothing_is_inside_a_collider() {
+    for contact in CONTACTS {
+        let depth = deepest::<f32, 2>(40, contact);
+        assert!(depth < 0.1, "2D {contact:?}: {depth} cells");
+        let depth = deepest::<f32, 3>(20, contact);
+        assert!(depth < 0.1, "3D {contact:?}: {depth} cells");
+    }
+}
+
+/// A block of jelly that lies on a half-space of any slope and moves off: the largest change of a
+/// particle's velocity \[m/s\].
+fn leave<const D: usize>(normal: [f64; D], friction: f64, transfer: Transfer) -> f64
+where
+    f64: Instance<D>,
+{
+    let dx = 0.05;
+    let (lambda, mu) = lame(1e4, 0.3);
+    let mut setup = Setup {
+        transfer,
+        time_step: TimeStep::Fixed(1e-3),
+        ..Setup::new(
+            dx,
+            vec![Material {
+                name: "jelly".into(),
+                density: DENSITY,
+                model: Model::Corotated(Corotated { lambda, mu }),
+            }],
+        )
+    };
+    let point = [0.013; D];
+    setup.colliders = vec![Collider::still(
+        "floor",
+        vec![Solid::HalfSpace { point, normal }],
+        Contact::Separate { friction },
+    )];
+    let floor = setup.colliders[0].at(0.0);
+    let n = 16_usize;
+    let place = |number: usize| {
+        core::array::from_fn(|i| (number / n.pow(i as u32) % n) as f64 * dx / 2.0 - 0.2)
+    };
+    let batch = ParticleBatch {
+        position: (0..n.pow(D as u32))
+            .map(place)
+            .filter(|x: &[f64; D]| floor.distance(*x).0 > 0.0)
+            .collect(),
+        velocity: vec![core::array::from_fn(|i| {
+            0.4 * normal[i] + [0.2, -0.1, 0.1][i]
+        })],
+        volume: vec![(dx / 2.0).powi(D as i32)],
+        ..ParticleBatch::default()
+    };
+    assert!(batch.position.len() > 50);
+    let velocity = batch.velocity[0];
+    let mut simulation = Simulation::<f64, D>::new(setup, &[batch]).unwrap();
+    for _ in 0..150 {
+        simulation.substep().unwrap();
+    }
+    let change = |v: [f64; D]| {
+        (0..D)
+            .map(|i| (v[i] - velocity[i]).abs())
+            .fold(0.0, f64::max)
+    };
+    let velocities = field::<D>(&simulation, Field::Velocity);
+    velocities.into_iter().map(change).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_body_that_leaves_a_separate_collider_keeps_its_velocity() {
+    for transfer in [Transfer::Pic, Transfer::Flip { blend: 1.0 }, Transfer::Apic] {
+        for friction in [0.0, 0.5] {
+            for normal in [[0.0, 1.0], [0.6, 0.8], [-1.0, 0.0]] {
+                let change = leave::<2>(normal, friction, transfer);
+                assert!(change < 1e-12, "{normal:?} {transfer:?}: {change:e}");
+            }
+            let normal = [0.48, 0.6, 0.64];
+            let change = leave::<3>(normal, friction, transfer);
+            assert!(change < 1e-12, "{normal:?} {transfer:?}: {change:e}");
+        }
+    }
+}
+
+/// How far a block that was let go on a slope has slid down it after a half and after one second \[m\].
+fn slide(angle: f64, friction: f64) -> [f64; 2] {
+    let dx = 0.1;
+    let (lambda, mu) = lame(5e6, 0.3);
+    let setup = Setup {
+        gravity: [0.0, -G],
+        colliders: vec![Collider::still(
+            "slope",
+            vec![Solid::HalfSpace {
+                point: [0.0, 0.0],
+                normal: [angle.sin(), angle.cos()],
+            }],
+            Contact::Separate { friction },
+        )],
+        ..Setup::new(
+            dx,
+            vec![Material {
+                name: "block".into(),
+                density: DENSITY,
+                model: Model::Corotated(Corotated { lambda, mu }),
+            }],
+        )
+    };
+    let down = [angle.cos(), -angle.sin()];
+    let step = dx / 2.0;
+    let mut batch = ParticleBatch {
+        volume: vec![step * step],
+        ..ParticleBatch::default()
+    };
+    for i in 0..20 {
+        for j in 0..10 {
+            let (s, h) = ((f64::from(i) + 0.5) * step, (f64::from(j) + 0.5) * step);
+            batch
+                .position
+                .push([s * down[0] - h * down[1], s * down[1] + h * down[0]]);
+        }
+    }
+    let mut simulation = Simulation::<f64, 2>::new(setup, &[batch]).unwrap();
+    let along = |simulation: &Simulation<f64, 2>| {
+        let x = field::<2>(simulation, Field::Position);
+        let along = x.iter().map(|x| x[0] * down[0] + x[1] * down[1]);
+        along.sum::<f64>() / x.len() as f64
+    };
+    let start = along(&simulation);
+    [0.5, 1.0].map(|time| {
+        simulation.advance_to(time).unwrap();
+        along(&simulation) - start
+    })
+}
+
+/// The block of S3 of the validation cases. It starts without stress, so that for its first
+/// milliseconds it is not pressed on the slope and friction is not all there: what it gains by that it
+/// keeps, and its acceleration is told by three places.
+#[test]
+fn a_block_slides_down_a_slope_by_coulomb_s_law() {
+    let angle = 24.0_f64.to_radians();
+    for friction in [0.0, 15.0_f64.to_radians().tan()] {
+        let [half, whole] = slide(angle, friction);
+        let acceleration = G * (angle.sin() - friction * angle.cos());
+        let part = (whole - 2.0 * half) / (0.25 * acceleration);
+        assert!(
+            (part - 1.0).abs() < 2e-3,
+            "{friction}: {part} of the acceleration"
+        );
+    }
+}
+
+#[test]
+fn a_block_stays_on_a_slope_that_holds_it() {
+    let [half, whole] = slide(10.0_f64.to_radians(), 15.0_f64.to_radians().tan());
+    assert!(half.abs() < 1e-3, "it sags by {half} m");
+    assert!(
+        (whole - half).abs() < 1e-5,
+        "and moves on by {} m",
+        whole - half
+    );
+}
+
+/// A piston through a column of water takes it along, and no particle stays behind.
+#[test]
+fn a_fast_piston_passes_no_particle() {
+    let mut random = common::Random(3);
+    let dx = 0.05;
+    let mut setup = Setup::<2>::new(dx, one_of_each());
+    setup.colliders = vec![Collider {
+        motion: Motion::Steady {
+            velocity: [0.0, 40.0],
+            spin: [0.0; 3],
+        },
+        ..Collider::still(
+            "piston",
+            vec![Solid::Box {
+                center: [0.0, -3.0],
+                half: [1.0, 0.11],
+                axes: [[1.0, 0.0], [0.0, 1.0]],
+            }],
+            SEPARATE,
+        )
+    }];
+    let dust = ball(4, [0.0, 0.0], 0.3, dx, [0.0; 2], &mut random);
+    let mut simulation = Simulation::<f32, 2>::new(setup.clone(), &[dust]).unwrap();
+    assert_eq!(simulation.next_dt().1.name(), "collider");
+    simulation.advance_to(0.1).unwrap();
+    let top = setup.colliders[0].at(0.1).distance([0.0, 0.0]).0;
+    assert!(top > 0.5, "the piston has passed where the dust was: {top}");
+    for x in field::<2>(&simulation, Field::Position) {
+        assert!(x[1] > 1.1 - 1e-3, "left behind at {x:?}");
+    }
+}
