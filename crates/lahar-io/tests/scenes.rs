@@ -496,11 +496,13 @@ proptest! {
 
 const IN_THE_WAY: &str = r#"
 dx = 0.05
+gravity = [0.0, 0.0]
 [domain]
 min = [0.0, 0.0]
 max = [2.0, 1.0]
 [materials.water]
 preset = "water"
+sound_speed = 20.0
 [[bodies]]
 name = "pool"
 material = "water"
