@@ -379,6 +379,12 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         }
     }
 
+    /// The nodes on wall number `wall` of [`Walls::planes`], by index, and the normal impulse that each
+    /// took in the last update \[kg m/s\].
+    pub(crate) fn pressed(&self, wall: usize) -> impl Iterator<Item = ([i32; D], f64)> {
+        self.columns.pressed(wall)
+    }
+
     /// Sums the tiles' contributions and leaves them as they are.
     pub(crate) fn sum_tiles(&mut self, isa: IsaToken) {
         self.sum(isa, |_, _, _| {});

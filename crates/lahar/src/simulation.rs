@@ -573,6 +573,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         self.gather(dt, limit, &colliders)?; // (5)–(8)
         self.account(&colliders);
         let before = self.control.time();
+        self.press_probes();
         self.control.taken(dt, limit);
         self.watch_colliders();
         self.read_probes(Some(before));

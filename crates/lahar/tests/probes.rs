@@ -296,6 +296,50 @@ fn forces_add_up_to_the_impulse() {
     );
 }
 
+/// Gauges in walls feel the weight of what rests on them: on the floor, in corners, on the sides,
+/// over plates.
+fn sensors<T: Instance<D>, const D: usize>() {
+    let g = 9.81;
+    let depth = |x: [f64; D]| -0.4 - x[1];
+    let weight = |x: [f64; D]| DENSITY * g * depth(x);
+    let mut normal = [0.0; D];
+    normal[1] = -1.0;
+    let width = 4.0 * DX;
+    let mut at_side = [-0.52; D];
+    (at_side[0], at_side[1]) = (0.0, -0.8);
+    let mut on_floor = [-0.52; D];
+    on_floor[1] = -1.0;
+    let places = [on_floor, [-1.0; D], at_side];
+    let mut probes: Vec<_> = places.iter().map(|&at| pressure(at, None)).collect();
+    probes.push(pressure(on_floor, Some(Plate { normal, width })));
+    let mut setup = tank(probes);
+    setup.gravity[1] = -g;
+    let mut top = [0.0; D];
+    top[1] = -0.4;
+    let particles = column([-1.0; D], top, 0.0, weight);
+    let mut simulation = Simulation::<T, D>::new(setup, &[particles]).unwrap();
+    simulation.advance_to(0.2).unwrap();
+    let read = simulation.take_probe_samples();
+    // A face in the corner reaches up the side: its middle is half a cell above the floor.
+    let mut in_corner = [-1.0; D];
+    in_corner[1] += 0.5 * DX;
+    for (probe, x) in read.iter().zip([on_floor, in_corner, at_side, on_floor]) {
+        let late = &probe.samples[1..];
+        let mean = late.iter().map(|s| s.values[0]).sum::<f64>() / late.len() as f64;
+        let wanted = weight(x);
+        assert!(
+            (mean / wanted - 1.0).abs() < 0.02,
+            "{x:?}: {mean} of {wanted}"
+        );
+    }
+}
+
+#[test]
+fn sensors_in_walls_feel_the_weight() {
+    sensors::<f64, 2>();
+    sensors::<f32, 3>();
+}
+
 #[test]
 fn what_cannot_be_read_is_refused_by_its_key() {
     let particles = column([-1.0, -1.0], [-0.6, -0.3], 0.0, |_| 0.0);

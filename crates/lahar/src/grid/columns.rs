@@ -24,6 +24,8 @@ struct Places<const D: usize> {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Columns<const D: usize> {
     walls: Vec<Vec<Places<D>>>,
+    /// The normal impulse that each column gave to its wall in the last update \[kg m/s\].
+    pressed: Vec<Vec<f64>>,
     /// The masses of all columns' nodes, before the first wall has acted \[kg\].
     masses: Vec<[f64; 3]>,
 }
@@ -64,9 +66,13 @@ impl<const D: usize> Columns<D> {
             }));
         }
         let mut masses = self.masses.iter();
-        for (columns, wall) in self.walls.iter().zip(&walls.planes) {
+        self.pressed.resize(walls.planes.len(), Vec::new());
+        let pressed = self.pressed.iter_mut();
+        for ((columns, wall), pressed) in self.walls.iter().zip(&walls.planes).zip(pressed) {
+            pressed.clear();
+            pressed.resize(columns.len(), 0.0);
             let taken = &mut taken[wall.side()];
-            for (places, masses) in columns.iter().zip(&mut masses) {
+            for ((places, masses), pressed) in columns.iter().zip(&mut masses).zip(pressed) {
                 let [beyond, plane, inside] = places
                     .across
                     .map(|place| read::<T, D>(nodes, planes, place));
@@ -95,6 +101,7 @@ impl<const D: usize> Columns<D> {
                     let mut at = places.node.map(f64::from);
                     at[wall.axis] += f64::from(wall.inward) * f64::from(step);
                     taken.add(at, change * -masses[k]); // (13)
+                    *pressed += change[wall.axis] * masses[k] * inward;
                 }
             }
         }
@@ -102,6 +109,13 @@ impl<const D: usize> Columns<D> {
 }
 
 impl<const D: usize> Columns<D> {
+    /// The nodes on wall number `wall` of [`Walls::planes`], by index, and the normal impulse that each
+    /// took in the last update \[kg m/s\].
+    pub(super) fn pressed(&self, wall: usize) -> impl Iterator<Item = ([i32; D], f64)> {
+        let nodes = self.walls[wall].iter().map(|places| places.node);
+        nodes.zip(self.pressed[wall].iter().copied())
+    }
+
     /// Adds to the volumes that nodes near walls hold those of the mirror images.
     pub(super) fn mirror_volumes<T: Lanes>(&self, nodes: &mut [T], planes: usize) {
         for columns in &self.walls {

@@ -25,6 +25,9 @@ pub(super) fn measure<T: Instance<D>, const D: usize>(
     let gauge = simulation.setup.probes[index].gauge.clone();
     vec![match gauge {
         Gauge::Pressure { at, radius, plate } => {
+            if let Some(felt) = simulation.felt(index) {
+                return vec![felt];
+            }
             let points = points(at, plate.as_ref(), radius);
             let sum: f64 = points
                 .iter()
@@ -101,12 +104,12 @@ fn tangents<const D: usize>(normal: [f64; D]) -> [[f64; D]; 2] {
 
 impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     /// `x` \[m\] in cells from the origin.
-    fn to_cells(&self, x: [f64; D]) -> [f64; D] {
+    pub(super) fn to_cells(&self, x: [f64; D]) -> [f64; D] {
         core::array::from_fn(|k| (x[k] - self.origin[k]) / self.setup.dx)
     }
 
     /// From `a` to `b` on an axis, in cells; the short way round where it is periodic.
-    fn offset_on(&self, axis: usize, a: f64, b: f64) -> f64 {
+    pub(super) fn offset_on(&self, axis: usize, a: f64, b: f64) -> f64 {
         match self.walls.period[axis] {
             Some(period) => (b - a) - period as f64 * ((b - a) / period as f64).round(),
             None => b - a,

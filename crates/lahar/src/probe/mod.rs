@@ -8,6 +8,7 @@
 //! moment it is due, and no substep is shortened for it. So a run has the same bits with and without.
 
 mod gauges;
+mod sensor;
 
 use crate::error::SetupError;
 use crate::instance::Instance;
@@ -28,7 +29,8 @@ pub struct Probe<const D: usize> {
 /// What a probe measures. Only [`Gauge::Pressure`] looks at the material law.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Gauge<const D: usize> {
-    /// Cauchy pressure \[Pa\] by (13), 0 where there is no particle.
+    /// Cauchy pressure \[Pa\] by (13), 0 where there is no particle. On a wall on its plane, what a sensor
+    /// in it feels: the normal impulse on its face since the reading before, over area and time.
     Pressure {
         /// Where \[m\].
         at: [f64; D],
@@ -101,6 +103,8 @@ pub(crate) struct Readings {
     samples: Vec<ProbeSample>,
     /// Time \[s\] of the last one, and the impulse \[N s\] that its boundary had taken till then.
     last: (f64, [f64; 3]),
+    /// The impulse on the face of a gauge in a wall since then, per area \[N s/m²; N s/m² in 2D too\].
+    pressed: f64,
 }
 
 /// The readings of one probe.
