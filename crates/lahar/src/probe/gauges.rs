@@ -10,7 +10,7 @@ use crate::store::{Group, Layout, Run, block_edge};
 /// Cells that a particle may be out of its block between sorts.
 const DRIFT: f64 = 1.0;
 
-/// How little the slope of the fit (13) is held to zero: a ten-thousandth of a radius squared is nothing
+/// How little the slope of the fit (16) is held to zero: a ten-thousandth of a radius squared is nothing
 /// where there are particles all around, and keeps two of them from setting a slope.
 const SLOPE_RIDGE: f64 = 1e-4;
 
@@ -163,7 +163,7 @@ fn weight(s: f64) -> f64 {
     }
 }
 
-/// (13): the pressure at a point \[Pa\], from a plane fitted to the particles around it. A mean
+/// (16): the pressure at a point \[Pa\], from a plane fitted to the particles around it. A mean
 /// alone would be the pressure where the particles are: on a wall, half a radius inside.
 fn pressure<T: Instance<D>, const D: usize>(
     simulation: &Simulation<T, D>,
@@ -191,9 +191,9 @@ fn pressure<T: Instance<D>, const D: usize>(
             let term = |i: usize| if i == 0 { 1.0 } else { d[i - 1] };
             for i in 0..=D {
                 for j in 0..=D {
-                    sums[i][j] += w * term(i) * term(j); // (13)
+                    sums[i][j] += w * term(i) * term(j); // (16)
                 }
-                right[i] += w * term(i) * pressure; // (13)
+                right[i] += w * term(i) * pressure; // (16)
             }
         },
     );

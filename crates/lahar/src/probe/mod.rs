@@ -29,7 +29,7 @@ pub struct Probe<const D: usize> {
 /// What a probe measures. Only [`Gauge::Pressure`] looks at the material law.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Gauge<const D: usize> {
-    /// Cauchy pressure \[Pa\] by (13), 0 where there is no particle. On a wall on its plane, what a sensor
+    /// Cauchy pressure \[Pa\] by (16), 0 where there is no particle. On a wall on its plane, what a sensor
     /// in it feels: the normal impulse on its face since the reading before, over area and time.
     Pressure {
         /// Where \[m\].
