@@ -1,5 +1,7 @@
 //! Numbers from series: periods, decay, distances from tables.
 
+use std::collections::BTreeMap;
+
 use super::session::Series;
 
 /// A table of reference numbers: its columns, in order. Lines that start with # tell its source, the
@@ -106,6 +108,65 @@ pub(super) fn order(coarse: f64, fine: f64, factor: f64) -> f64 {
     (coarse / fine).abs().ln() / factor.ln()
 }
 
+/// Distance of each place to the nearest other one; places as `d` coordinates each.
+pub(super) fn to_nearest(x: &[f64], d: usize) -> Vec<f64> {
+    let places: Vec<&[f64]> = x.chunks(d).collect();
+    let mut cells = BTreeMap::<Vec<i64>, Vec<usize>>::new();
+    let cell = |place: &[f64]| -> Vec<i64> { place.iter().map(|x| x.floor() as i64).collect() };
+    for (index, place) in places.iter().enumerate() {
+        cells.entry(cell(place)).or_default().push(index);
+    }
+    let distance = |a: &[f64], b: &[f64]| {
+        a.iter()
+            .zip(b)
+            .map(|(a, b)| (a - b).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    };
+    let nearest = |(index, place): (usize, &&[f64])| {
+        let around = (0..3_usize.pow(d as u32)).map(|number| {
+            let mut number = number;
+            let mut key = cell(place);
+            for k in &mut key {
+                *k += (number % 3) as i64 - 1;
+                number /= 3;
+            }
+            key
+        });
+        let others = around.filter_map(|key| cells.get(&key)).flatten();
+        let others = others.filter(|other| **other != index);
+        others
+            .map(|other| distance(place, places[*other]))
+            .fold(f64::INFINITY, f64::min)
+    };
+    places.iter().enumerate().map(nearest).collect()
+}
+
+/// The value that a `part` of the values lies below.
+pub(super) fn percentile(mut values: Vec<f64>, part: f64) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let index = (part * values.len() as f64) as usize;
+    values.get(index).copied().unwrap_or(f64::NAN)
+}
+
+/// Standard deviation of the number of places in a cell of side 1, over cells that hold any, as far as they lie
+/// below `below` on the second axis.
+pub(super) fn spread_a_cell(x: &[f64], d: usize, below: f64) -> f64 {
+    let mut counts = BTreeMap::<Vec<i64>, f64>::new();
+    for place in x.chunks(d).filter(|place| place[1].floor() + 1.0 <= below) {
+        let cell = place.iter().map(|x| x.floor() as i64).collect();
+        *counts.entry(cell).or_default() += 1.0;
+    }
+    let n = counts.len() as f64;
+    let mean = counts.values().sum::<f64>() / n;
+    (counts
+        .values()
+        .map(|count| (count - mean).powi(2))
+        .sum::<f64>()
+        / n)
+        .sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -123,6 +184,15 @@ mod tests {
         assert!(mean(&wave(1.0), 0.5, 3.5).abs() < 1e-4);
         assert_eq!(mean(&[(0.0, 1.0), (2.0, 3.0)], 0.5, 1.5), 2.0);
         assert_eq!(at(&[(0.0, 1.0), (2.0, 3.0)], 5.0), 3.0);
+    }
+
+    #[test]
+    fn neighbours_and_crowds() {
+        let x = [0.25, 0.25, 0.75, 0.25, 1.25, 0.25, 1.25, 0.35];
+        assert_eq!(to_nearest(&x, 2)[0], 0.5);
+        assert!((percentile(to_nearest(&x, 2), 0.3) - 0.1).abs() < 1e-12);
+        assert_eq!(spread_a_cell(&x, 2, 1.0), 0.0);
+        assert_eq!(spread_a_cell(&x[..6], 2, 1.0), 0.5);
     }
 
     #[test]

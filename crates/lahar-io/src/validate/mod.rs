@@ -14,6 +14,7 @@ mod method;
 mod report;
 mod session;
 mod solids;
+mod tanks;
 mod waves;
 
 use lahar::Isa;
@@ -44,6 +45,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
         method::CASES,
         solids::CASES,
         waves::CASES,
+        tanks::CASES,
         flows::CASES,
         dam_breaks::CASES,
     ]

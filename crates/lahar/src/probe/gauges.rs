@@ -14,6 +14,10 @@ const DRIFT: f64 = 1.0;
 /// where there are particles all around, and keeps two of them from setting a slope.
 const SLOPE_RIDGE: f64 = 1e-4;
 
+/// Part of the range of pressures around a gauge by which it may read more, or less: on a wall a linear
+/// pressure is a quarter of the range above its highest particle.
+const MOST_BEYOND: f64 = 0.5;
+
 /// Part of a cell that counts as inside the surface.
 const SURFACE: f64 = 0.5;
 
@@ -175,6 +179,7 @@ fn pressure<T: Instance<D>, const D: usize>(
     // Normal equations of p(d) = c₀ + c·d: the matrix and the right side.
     let mut sums = [[0.0; 4]; 4];
     let mut right = [0.0; 4];
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     simulation.near(
         x,
         reach,
@@ -187,6 +192,7 @@ fn pressure<T: Instance<D>, const D: usize>(
                 return;
             }
             let (volume, pressure) = volume_and_pressure(group, row);
+            (low, high) = (low.min(pressure), high.max(pressure));
             let w = volume * (1.0 - squared) * (1.0 - squared);
             let term = |i: usize| if i == 0 { 1.0 } else { d[i - 1] };
             for i in 0..=D {
@@ -204,7 +210,14 @@ fn pressure<T: Instance<D>, const D: usize>(
     for (i, row) in sums.iter_mut().enumerate().take(D + 1).skip(1) {
         row[i] += SLOPE_RIDGE * total;
     }
-    first_unknown::<D>(sums, right)
+    // A plane is no fit of an impact: what it says beyond what is there is cut off.
+    let beyond = MOST_BEYOND * (high - low);
+    let lowest = if low < 0.0 {
+        low - beyond
+    } else {
+        (low - beyond).max(0.0)
+    };
+    first_unknown::<D>(sums, right).clamp(lowest, high + beyond)
 }
 
 /// J V⁰ \[m³\] and Cauchy pressure \[Pa\] of a particle.
