@@ -1554,7 +1554,7 @@ pub(crate) static PRESSURE: Section = Section {
             "radius",
             Kind::Number(Bound::Positive),
             "m",
-            Words("1.5 `dx`"),
+            Words("2 `dx`"),
             "How far away particles count.",
         ),
         key(
