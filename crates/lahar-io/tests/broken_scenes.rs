@@ -478,6 +478,21 @@ const BROKEN: &[(&str, &str, &str)] = &[
         "material = \"water\"",
         "material = \"water\"\nvelocity_gradient = [[0.0, \"sin(x)\"], [0.0, 0.0]]",
     ),
+    (
+        "a yield stress of water",
+        "model = \"fluid\"\n",
+        "model = \"fluid\"\nyield_stress = 10.0\n",
+    ),
+    (
+        "a rheology without numbers",
+        "model = \"fluid\"\n",
+        "model = \"fluid\"\nrheology = \"herschel-bulkley\"\n",
+    ),
+    (
+        "a fluid that thickens",
+        "model = \"fluid\"\n",
+        "model = \"fluid\"\nrheology = \"herschel-bulkley\"\nconsistency = 1.0\nflow_index = 1.5\n",
+    ),
     ("four dimensions", "dx = 0.05", "dx = 0.05\ndimension = 4"),
     (
         "substeps without dt",

@@ -9,8 +9,9 @@
 use fearless_simd::{Level, Simd, dispatch};
 use lahar::material::{
     ConstitutiveModel, Corotated, Dilatation, DisplacementGradient, Dust, Eos, Fluid,
-    HardeningFrom, JacobianUpdate, LOGARITHM_ENDS, Model, NeoHookean, PRESETS, PlasticGradient,
-    SMALLEST_JACOBIAN, Snow, Strain, lame, lame_from_bulk_and_shear, preset,
+    HardeningFrom, HerschelBulkley, JacobianUpdate, LOGARITHM_ENDS, Model, NeoHookean, PRESETS,
+    PlasticGradient, Rheology, SMALLEST_JACOBIAN, Snow, Strain, lame, lame_from_bulk_and_shear,
+    preset,
 };
 use lahar::math::{Lanes, Matrix, Scalar, Vector, svd};
 
@@ -60,6 +61,13 @@ conforms!(
     Fluid {
         tension: f64::INFINITY,
         ..Fluid::inviscid(400.0)
+    }
+);
+conforms!(
+    paste,
+    Fluid {
+        rheology: Rheology::HerschelBulkley(PASTE),
+        ..Fluid::water_like(1000.0, 10.0)
     }
 );
 conforms!(tait_1_without_tension, Fluid::inviscid(400.0));
@@ -738,6 +746,105 @@ fn the_equation_of_state_is_inverted() {
     }
     let law = Fluid::water_like(1000.0, 10.0);
     assert_eq!(law.jacobian_minus_one_at(-1e6), f64::INFINITY);
+}
+
+const PASTE: HerschelBulkley = HerschelBulkley {
+    yield_stress: 3.0,
+    consistency: 2.0,
+    flow_index: 0.5,
+    creep_rate: 0.1,
+};
+
+/// (14) against numbers computed apart: above the yield stress, below it, at rest; a Bingham fluid
+/// and a power law.
+#[test]
+fn viscosity_is_herschels_and_bulkleys() {
+    let bingham = HerschelBulkley {
+        yield_stress: 25.0,
+        consistency: 0.07,
+        flow_index: 1.0,
+        ..PASTE
+    };
+    let ketchup = HerschelBulkley {
+        yield_stress: 0.0,
+        consistency: 18.7,
+        flow_index: 0.27,
+        ..PASTE
+    };
+    for (law, rate, expected) in [
+        (PASTE, 4.0, 1.749_843_811_006_560_4),
+        (PASTE, 0.005, 35.582_953_937_599_55),
+        (PASTE, 0.0, 36.324_555_320_336_756),
+        (bingham, 10.0, 2.57),
+        (ketchup, 0.02, 98.997_547_930_122_41),
+    ] {
+        let found: f64 = law.viscosity(rate);
+        assert!(
+            (found / expected - 1.0).abs() < 1e-9,
+            "{found}, not {expected}"
+        );
+        let single = f64::from(law.viscosity(rate as f32));
+        assert!(
+            (single / expected - 1.0).abs() < 2e-6,
+            "{single}, not {expected}"
+        );
+        assert!(found <= law.largest_viscosity());
+    }
+}
+
+/// No stress from a rotation or on the trace; the same stress in turned axes; never energy; stress
+/// that grows with the rate of shear, from the yield stress on.
+fn yielding_stress_is_sound<const D: usize>() {
+    let law = Fluid {
+        rheology: Rheology::HerschelBulkley(PASTE),
+        ..Fluid::inviscid(1.0)
+    };
+    let rest = Dilatation {
+        jacobian_minus_one: 0.0,
+    };
+    let mut random = Random::new();
+    for _ in 0..50 {
+        let scale = 10.0_f64.powf(3.0 * random.next());
+        let l: Matrix<f64, D> = random.matrix(scale);
+        let tau = law.kirchhoff_stress(rest, l);
+        let dissipated: f64 = (0..D).map(|j| tau.0[j].dot(l.0[j])).sum();
+        assert!(dissipated > 0.0, "{dissipated}");
+        assert!(tau.trace().abs() < 1e-13 * tau.norm());
+        let turn = random.rotation();
+        let turned = law.kirchhoff_stress(rest, turn * l * turn.transpose());
+        let difference = turned - turn * tau * turn.transpose();
+        assert!(difference.norm() < 1e-12 * tau.norm());
+        let spin = l - l.transpose();
+        assert_eq!(law.kirchhoff_stress(rest, spin).norm(), 0.0);
+    }
+    let mut before = 0.0;
+    for rate in [0.01, 0.1, 1.0, 10.0, 100.0] {
+        let shear = Matrix::<f64, D>::from_fn(|i, j| if (i, j) == (0, 1) { rate } else { 0.0 });
+        let stress = law.kirchhoff_stress(rest, shear)[(0, 1)];
+        assert!(stress > before);
+        before = stress;
+        if rate >= 1.0 {
+            let expected = 3.0 + 2.0 * rate.sqrt();
+            assert!(
+                (stress / expected - 1.0).abs() < 2e-3,
+                "{stress}, not {expected}"
+            );
+        }
+    }
+    // What limits the time step: a longitudinal wave in what stands still.
+    let longitudinal = 2.0 * (1.0 - 1.0 / D as f64) * 36.324_555_320_336_756;
+    let found = ConstitutiveModel::<D>::viscosity(&law);
+    assert!((found / longitudinal - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn yielding_stress_is_sound_2d() {
+    yielding_stress_is_sound::<2>();
+}
+
+#[test]
+fn yielding_stress_is_sound_3d() {
+    yielding_stress_is_sound::<3>();
 }
 
 #[test]

@@ -12,8 +12,8 @@ use crate::particle_list::ParticleList;
 use crate::sampling::{Sampling, expected_count};
 use crate::shape::{Bounds, Region, Shape};
 use lahar::material::{
-    Corotated, Dust, Eos, Fluid, HardeningFrom, JacobianUpdate, NeoHookean, Snow, ViscousStress,
-    VolumeCorrection, VolumeRule, lame,
+    Corotated, Dust, Eos, Fluid, HardeningFrom, HerschelBulkley, JacobianUpdate, NeoHookean,
+    Rheology, Snow, ViscousStress, VolumeCorrection, VolumeRule, lame, rheology::CREEP_RATE,
 };
 use lahar::{
     Collider, Contact, Corners, Cushion, Domain, Force, ForceForm, Kernel, Material, Model, Probe,
@@ -812,6 +812,7 @@ fn read_fluid(table: &Reader<'_>) -> Result<(Fluid, Stiffness), SceneError> {
         eos,
         bulk_modulus: 0.0,
         viscosity: table.number("viscosity")?,
+        rheology: read_rheology(table)?,
         bulk_viscosity: table.number("bulk_viscosity")?,
         tension: table.opt_number("tension").unwrap_or(f64::INFINITY),
         jacobian_update: if table.text("jacobian_update")? == "det" {
@@ -827,6 +828,39 @@ fn read_fluid(table: &Reader<'_>) -> Result<(Fluid, Stiffness), SceneError> {
         },
     };
     Ok((fluid, stiffness))
+}
+
+fn read_rheology(table: &Reader<'_>) -> Result<Rheology, SceneError> {
+    let [yield_stress, consistency, flow_index, creep_rate] =
+        ["yield_stress", "consistency", "flow_index", "creep_rate"];
+    if table.text("rheology")? == "newtonian" {
+        let given = [yield_stress, consistency, flow_index, creep_rate]
+            .into_iter()
+            .find(|key| table.has(key));
+        return match given {
+            Some(key) => Err(table
+                .error_at_key(
+                    key,
+                    format!("\"{key}\" is for rheology = \"herschel-bulkley\" only"),
+                )
+                .hint("add rheology = \"herschel-bulkley\" to the material")),
+            None => Ok(Rheology::Newtonian),
+        };
+    }
+    let law = HerschelBulkley {
+        yield_stress: table.opt_number(yield_stress).unwrap_or(0.0),
+        consistency: table.opt_number(consistency).unwrap_or(0.0),
+        flow_index: table.opt_number(flow_index).unwrap_or(1.0),
+        creep_rate: table.opt_number(creep_rate).unwrap_or(CREEP_RATE),
+    };
+    if law.yield_stress == 0.0 && law.consistency == 0.0 {
+        let error = table.error_at_key(
+            "rheology",
+            "a Herschel-Bulkley fluid needs \"yield_stress\" or \"consistency\" or both",
+        );
+        return Err(error.hint("for mud, for instance, yield_stress = 25.0 and consistency = 0.07"));
+    }
+    Ok(Rheology::HerschelBulkley(law))
 }
 
 fn read_volume_rule(table: &Reader<'_>) -> Result<VolumeRule, SceneError> {

@@ -18,6 +18,8 @@ pub(crate) const NAMES: &[&str] = &[
     "sea_water",
     "honey",
     "mercury",
+    "ketchup",
+    "mud",
     "jelly",
     "rubber",
     "snow",
@@ -54,6 +56,18 @@ pub(crate) const PRESETS: &[Preset] = &[
         keys: "model = \"fluid\"\ndensity = 13534.0\nviscosity = 1.526e-3\ncolor = \"#b9bec4\"",
         about: "Mercury at 25 °C.",
         source: "CRC Handbook of Chemistry and Physics",
+    },
+    Preset {
+        name: "ketchup",
+        keys: "model = \"fluid\"\ndensity = 1140.0\nrheology = \"herschel-bulkley\"\nyield_stress = 32.0\nconsistency = 18.7\nflow_index = 0.27\ncolor = \"#b3261e\"",
+        about: "Tomato ketchup at 25 °C; its density is a choice.",
+        source: "Steffe 1996, after Higgs and Norrington 1971",
+    },
+    Preset {
+        name: "mud",
+        keys: "model = \"fluid\"\ndensity = 1200.0\nrheology = \"herschel-bulkley\"\nyield_stress = 25.0\nconsistency = 0.07\ncolor = \"#8a5a44\"",
+        about: "Water with 27.4 % of clay by volume.",
+        source: "Komatina and Jovanović 1997",
     },
     Preset {
         name: "jelly",

@@ -1,8 +1,9 @@
-//! Weakly compressible fluid: pressure from J, Newtonian viscosity.
+//! Weakly compressible fluid: pressure from J, viscosity.
 //!
 //! The pressure is computed from e = J − 1, which is what is stored. A fluid at rest lives at
 //! |e| ≈ 10⁻⁵, where J^−γ − 1 formed from J has lost half the digits of an `f32`.
 
+use super::rheology::{Rheology, shear_rate};
 use super::{ConstitutiveModel, Dilatation, VolumeCorrection, VolumeRule};
 use crate::math::near_one::{minus_ln_1p, power_minus_one};
 use crate::math::{Matrix, Real, Scalar};
@@ -22,7 +23,7 @@ pub const SMALLEST_JACOBIAN: f64 = 0.1;
 /// fluid without tension, so that forgetting creates no energy.
 pub const TORN: f64 = 1.1;
 
-/// p(J), cut off where it would pull harder than `tension`, plus Newtonian viscosity:
+/// p(J), cut off where it would pull harder than `tension`, plus viscosity:
 /// τ = −J p I + J (μ (∇v + ∇vᵀ − (2/d) tr ∇v I) + κ tr ∇v I).
 ///
 /// Speed of sound at rest: √(K/ρ₀). Energy per rest volume: −∫ p dJ from 1.
@@ -32,8 +33,10 @@ pub struct Fluid {
     pub eos: Eos,
     /// Bulk modulus at rest K = ρ₀c² \[Pa\].
     pub bulk_modulus: f64,
-    /// Dynamic (shear) viscosity μ \[Pa s\].
+    /// Dynamic (shear) viscosity μ \[Pa s\]; what `rheology` says is added.
     pub viscosity: f64,
+    /// How viscosity depends on the rate of shear.
+    pub rheology: Rheology,
     /// Bulk viscosity κ \[Pa s\].
     pub bulk_viscosity: f64,
     /// The largest tension that it bears \[Pa\]; 0: none; infinite: as the equation of state says.
@@ -102,6 +105,7 @@ impl Fluid {
             eos: Eos::Tait { gamma: 1.0 },
             bulk_modulus,
             viscosity: 0.0,
+            rheology: Rheology::Newtonian,
             bulk_viscosity: 0.0,
             tension: 0.0,
             jacobian_update: JacobianUpdate::Trace,
@@ -200,22 +204,30 @@ impl<const D: usize> ConstitutiveModel<D> for Fluid {
             Eos::Tait { gamma: 1.0 } => (e * e.lit(self.bulk_modulus)).min(j * e.lit(self.tension)),
             _ => -j * self.pressure(e),
         };
-        let (mu, kappa) = (self.viscosity, self.bulk_viscosity);
-        if mu == 0.0 && kappa == 0.0 {
-            return Matrix::scaled_identity(tau);
-        }
+        let (newtonian, kappa) = (self.viscosity, self.bulk_viscosity);
         let l = velocity_gradient;
-        let mut shear = (l + l.transpose()) * e.lit(mu);
-        let mean = match self.viscous_stress {
-            ViscousStress::Newtonian => kappa - 2.0 * mu / D as f64,
-            ViscousStress::Engineering => {
-                for i in 0..D {
-                    shear[(i, i)] = l[(i, i)] * e.lit(mu);
-                }
-                kappa
+        let d = D as f64;
+        let (mu, mean) = match self.rheology {
+            Rheology::Newtonian if newtonian == 0.0 && kappa == 0.0 => {
+                return Matrix::scaled_identity(tau);
+            }
+            Rheology::Newtonian => (e.lit(newtonian), e.lit(kappa - 2.0 * newtonian / d)),
+            Rheology::HerschelBulkley(law) => {
+                let mu = law.viscosity(shear_rate(l)) + e.lit(newtonian);
+                (mu, e.lit(kappa) - mu * e.lit(2.0 / d))
             }
         };
-        let mean = l.trace() * e.lit(mean);
+        let mut shear = (l + l.transpose()) * mu;
+        let mean = match self.viscous_stress {
+            ViscousStress::Newtonian => mean,
+            ViscousStress::Engineering => {
+                for i in 0..D {
+                    shear[(i, i)] = l[(i, i)] * mu;
+                }
+                e.lit(kappa)
+            }
+        };
+        let mean = l.trace() * mean;
         (shear + Matrix::scaled_identity(mean)) * j + Matrix::scaled_identity(tau)
     }
 
@@ -260,7 +272,12 @@ impl<const D: usize> ConstitutiveModel<D> for Fluid {
 
     /// What damps a longitudinal wave, κ + 2μ(1 − 1/d), or a shear wave, μ: the larger.
     fn viscosity(&self) -> f64 {
-        let longitudinal = self.bulk_viscosity + 2.0 * self.viscosity * (1.0 - 1.0 / D as f64);
-        longitudinal.max(self.viscosity)
+        let mu = self.viscosity
+            + match self.rheology {
+                Rheology::Newtonian => 0.0,
+                Rheology::HerschelBulkley(law) => law.largest_viscosity(),
+            };
+        let longitudinal = self.bulk_viscosity + 2.0 * mu * (1.0 - 1.0 / D as f64);
+        longitudinal.max(mu)
     }
 }

@@ -10,6 +10,7 @@ mod model;
 mod neo_hookean;
 mod none;
 pub mod presets;
+pub mod rheology;
 mod snow;
 mod strain;
 
@@ -20,6 +21,7 @@ pub use law::{IsaToken, Law, ParticleState, law};
 pub use neo_hookean::{LOGARITHM_ENDS, NeoHookean};
 pub use none::Dust;
 pub use presets::{PRESETS, preset};
+pub use rheology::{HerschelBulkley, Rheology};
 pub use snow::{HardeningFrom, Snow};
 pub use strain::{Dilatation, DisplacementGradient, PlasticGradient, Strain};
 

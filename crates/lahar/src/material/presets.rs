@@ -1,6 +1,7 @@
 //! Named materials with the sources of their numbers, so that a scene can say `preset = "water"`.
 
-use super::{Corotated, Fluid, Material, Model, NeoHookean, Snow};
+use super::rheology::CREEP_RATE;
+use super::{Corotated, Fluid, HerschelBulkley, Material, Model, NeoHookean, Rheology, Snow};
 
 /// The presets: name, and one sentence with the source.
 pub const PRESETS: &[(&str, &str)] = &[
@@ -21,6 +22,16 @@ pub const PRESETS: &[(&str, &str)] = &[
     (
         "mercury",
         "Mercury at 25 °C: 13 534 kg/m³, 1.526 mPa s (CRC Handbook of Chemistry and Physics).",
+    ),
+    (
+        "ketchup",
+        "Tomato ketchup at 25 °C: 32 Pa + 18.7 Pa sⁿ, n = 0.27 (J. F. Steffe, Rheological Methods in Food \
+         Process Engineering, 1996, after Higgs and Norrington 1971); 1140 kg/m³ is a choice.",
+    ),
+    (
+        "mud",
+        "Water with 27.4 % of clay by volume: 1200 kg/m³, 25 Pa, 0.07 Pa s, a Bingham fluid (D. Komatina and M. \
+         Jovanović, J. Hydraulic Res. 35, 1997).",
     ),
     (
         "jelly",
@@ -50,11 +61,26 @@ pub fn preset(name: &str, sound_speed: f64) -> Option<Material> {
         };
         (density, Model::Fluid(law))
     };
+    let yielding = |density: f64, yield_stress, consistency, flow_index| {
+        let law = Fluid {
+            viscosity: 0.0,
+            rheology: Rheology::HerschelBulkley(HerschelBulkley {
+                yield_stress,
+                consistency,
+                flow_index,
+                creep_rate: CREEP_RATE,
+            }),
+            ..Fluid::water_like(density, sound_speed)
+        };
+        (density, Model::Fluid(law))
+    };
     let (density, model) = match name {
         "water" => fluid(998.2, 1.002e-3),
         "sea_water" => fluid(1024.8, 1.072e-3),
         "honey" => fluid(1420.0, 19.0),
         "mercury" => fluid(13_534.0, 1.526e-3),
+        "ketchup" => yielding(1140.0, 32.0, 18.7, 0.27),
+        "mud" => yielding(1200.0, 25.0, 0.07, 1.0),
         "jelly" => (1010.0, Model::Corotated(Corotated::new(4.3e3, 0.45))),
         "rubber" => (930.0, Model::NeoHookean(NeoHookean::new(2e6, 0.49))),
         "snow" => (400.0, Model::Snow(Snow::default())),
