@@ -45,7 +45,7 @@ impl HerschelBulkley {
         let x = rate / rate.lit(creep);
         let bounded = (x * x + x.one()).power(0.5 * (self.flow_index - 1.0));
         let thinning = bounded * x.lit(self.consistency * libm::pow(creep, self.flow_index - 1.0));
-        thinning + yielding(x) * x.lit(self.yield_stress / creep) // (14)
+        thinning + yielding(x) * x.lit(self.yield_stress / creep) // (17)
     }
 
     /// Viscosity of what stands still \[Pa s\], the largest.
