@@ -25,11 +25,11 @@ use crate::error::SetupError;
 use crate::forces;
 use crate::grid::{NodePointer, OUTSIDE};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
+use crate::material::rheology::shear_rate;
 use crate::material::{ConstitutiveModel, Model, Strain, VolumeCorrection, VolumeRule, for_model};
 use crate::math::{Matrix, Vector};
 use crate::setup::{Deformation, ForceForm, Kernel, ParticleBatch, Setup, Transfer};
 use crate::simulation::{CORRECTION_INTERVAL, Pointer};
-use crate::transfer::volume::shear_rate;
 use std::collections::BTreeMap;
 
 /// A particle of the oracle.

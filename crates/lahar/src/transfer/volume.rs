@@ -8,6 +8,7 @@ use super::{LARGEST_TILE, Scheme, Stage, rows};
 use crate::dispatch::{on_level, on_portable};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
+use crate::material::rheology::shear_rate;
 use crate::material::{CHUNK, IsaToken, VolumeCorrection, load_part, store_part};
 use crate::math::{Lanes, Matrix, Real};
 use crate::parallel;
@@ -114,15 +115,6 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
             }),
         }
     }
-}
-
-/// γ̇ = √(2 D:D) \[1/s\], D the part of the velocity gradient that changes shape.
-#[inline(always)]
-pub(crate) fn shear_rate<R: Real, const D: usize>(velocity_gradient: Matrix<R, D>) -> R {
-    let twice = velocity_gradient + velocity_gradient.transpose();
-    let mean = twice.trace() * twice[(0, 0)].lit(1.0 / D as f64);
-    let deviator = twice - Matrix::scaled_identity(mean);
-    (deviator.squared_norm() * mean.lit(0.5)).sqrt()
 }
 
 /// (7g), or (7h) and (7i), for the particles from row `start` on, as many as `out` has room for.
