@@ -61,7 +61,7 @@ pub enum Gauge<const D: usize> {
     /// The mean force of the material on a boundary since the reading before \[N; N/m in 2D\], a
     /// number an axis; 0 at the start.
     Force {
-        /// Its name in [`Simulate::boundary_impulses`](crate::Simulate::boundary_impulses).
+        /// Its name in [`Simulate::boundary_impulses`].
         on: String,
     },
 }
