@@ -91,6 +91,7 @@ const VALIDATION: &[Builtin] = scenes! {
     "f1-taylor-green" in "validation" 2 "Taylor-Green whirls at Re = 100" "A square of whirls decays.";
     "f2-shear-wave" in "validation" 2 "Shear wave without viscosity" "A shear wave that should stay.";
     "f3-poiseuille" in "validation" 2 "Poiseuille flow starts" "A force starts the flow between two plates.";
+    "f3-couette" in "validation" 2 "Couette flow starts" "A plate that is drawn along starts the flow between two.";
     "f4-tank" in "validation" 2 "Tank of water at rest" "Water that should stay at rest.";
     "f4-tank-3d" in "validation" 3 "Tank of water at rest in 3D" "The same in 3D.";
     "f5-standing-wave" in "validation" 2 "Standing wave" "A standing gravity wave in a tank.";

@@ -9,7 +9,7 @@ use super::session::{Series, Session, Stop, field};
 pub(super) const CASES: &[Case] = &[
     Case {
         id: "F3",
-        title: "Poiseuille flow starts",
+        title: "Poiseuille and Couette flow start",
         reference: "series; Morris, Fox & Zhu 1997",
         scene: "f3-poiseuille",
         long: false,
@@ -42,13 +42,24 @@ pub(super) const CASES: &[Case] = &[
 ];
 
 fn f3(session: &mut Session<'_>) -> Result<(), Stop> {
+    starts(session, "f3-poiseuille", "Poiseuille", 2)?;
+    starts(session, "f3-couette", "Couette", 3)
+}
+
+/// A flow between plates against number `column` of the table.
+fn starts(
+    session: &mut Session<'_>,
+    scene: &'static str,
+    name: &str,
+    column: usize,
+) -> Result<(), Stop> {
     let reference = table(include_str!(
         "../../scenes/validation/data/fluid_poiseuille_couette_startup.csv"
     ));
     let mut lines = Vec::new();
     for cells in [20.0, 40.0] {
         let dx = 1.0 / cells;
-        let mut running = session.start(&[("dx", dx.to_string())])?;
+        let mut running = session.start_scene(scene, &[("dx", dx.to_string())])?;
         // Speeds over y, at each frame: means over layers of particles.
         let mut profiles: Vec<(f64, Series)> = Vec::new();
         running.frames(|simulation| {
@@ -60,7 +71,7 @@ fn f3(session: &mut Session<'_>) -> Result<(), Stop> {
         })?;
         let mut worst = 0.0_f64;
         for row in 0..reference[0].len() {
-            let (time, y, exact) = (reference[0][row], reference[1][row], reference[2][row]);
+            let (time, y, exact) = (reference[0][row], reference[1][row], reference[column][row]);
             let profile = profiles
                 .iter()
                 .find(|profile| (profile.0 - time).abs() < 1e-6);
@@ -73,7 +84,7 @@ fn f3(session: &mut Session<'_>) -> Result<(), Stop> {
                 };
             }
         }
-        let quantity = format!("largest error of the speed / U, {cells} cells");
+        let quantity = format!("{name}: largest error of the speed / U, {cells} cells");
         if cells == 40.0 {
             session.at_most(&quantity, worst, 5e-3);
         } else {
@@ -91,13 +102,13 @@ fn f3(session: &mut Session<'_>) -> Result<(), Stop> {
         0,
         (
             "series".to_owned(),
-            rows.map(|row| (reference[1][row], reference[2][row]))
+            rows.map(|row| (reference[1][row], reference[column][row]))
                 .collect(),
         ),
     );
     session.plot(
-        "profile",
-        "F3: speed across the channel at t = 0.1 L²/nu",
+        &name.to_lowercase(),
+        &format!("F3: speed across the channel at t = 0.1 L²/nu, {name}"),
         ["y/L", "u/U"],
         lines,
     );

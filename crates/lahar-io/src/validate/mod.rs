@@ -9,6 +9,7 @@
 
 mod dam_breaks;
 mod flows;
+mod laws;
 mod measure;
 mod method;
 mod report;
@@ -43,6 +44,7 @@ pub struct Case {
 pub fn cases() -> impl Iterator<Item = &'static Case> {
     [
         method::CASES,
+        laws::CASES,
         solids::CASES,
         waves::CASES,
         tanks::CASES,
