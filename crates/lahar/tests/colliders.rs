@@ -5,30 +5,18 @@
 mod common;
 
 use common::{CONTACTS, ball, brawl, crowd, one_of_each};
+mod walled;
+
 use lahar::material::{Corotated, Fluid, lame};
 use lahar::particles::Field;
 use lahar::{
     Collider, Contact, Deformation, Domain, Instance, Material, Model, Motion, ParticleBatch,
-    Setup, Sides, Simulate, Simulation, Solid, TimeStep, Transfer, WallStyle,
+    Setup, Simulate, Simulation, Solid, TimeStep, Transfer, WallStyle,
 };
+use walled::{SEPARATE, SLIP, both, field};
 
 const DENSITY: f64 = 1000.0; // kg/m³
 const G: f64 = 9.81; // m/s²
-const SLIP: Contact = Contact::Slip { friction: 0.0 };
-const SEPARATE: Contact = Contact::Separate { friction: 0.0 };
-
-fn both(contact: Contact) -> Sides {
-    Sides::Walls {
-        low: contact,
-        high: contact,
-    }
-}
-
-fn field<const D: usize>(simulation: &impl Simulate, field: Field) -> Vec<[f64; D]> {
-    let snapshot = simulation.snapshot(&[field]);
-    let numbers = snapshot.columns[0].1.to_f64();
-    numbers.as_chunks().0.to_vec()
-}
 
 fn fluid(sound_speed: f64) -> Material {
     Material {

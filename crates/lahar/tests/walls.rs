@@ -1,6 +1,8 @@
 //! Walls on their planes: waves see them where they are drawn, a body at rest stays, and what leaves
 //! a `separate` wall leaves as if there were none.
 
+mod walled;
+
 use lahar::material::{Corotated, Fluid, lame};
 use lahar::particles::Field;
 use lahar::{
@@ -8,18 +10,9 @@ use lahar::{
     Simulation, TimeStep, Transfer, WallStyle,
 };
 use std::f64::consts::PI;
+use walled::{SEPARATE, SLIP, both, field};
 
 const DENSITY: f64 = 1000.0; // kg/m³
-
-const SLIP: Contact = Contact::Slip { friction: 0.0 };
-const SEPARATE: Contact = Contact::Separate { friction: 0.0 };
-
-fn both(contact: Contact) -> Sides {
-    Sides::Walls {
-        low: contact,
-        high: contact,
-    }
-}
 
 /// Fluid with p = ρ₀c² (1/J − 1).
 fn fluid(sound_speed: f64, tension: f64) -> Material {
@@ -49,12 +42,6 @@ fn lattice<const D: usize>(min: [f64; D], max: [f64; D], dx: f64) -> ParticleBat
         volume: vec![(dx / 2.0).powi(D as i32)],
         ..ParticleBatch::default()
     }
-}
-
-fn field<const D: usize>(simulation: &impl Simulate, field: Field) -> Vec<[f64; D]> {
-    let snapshot = simulation.snapshot(&[field]);
-    let numbers = snapshot.columns[0].1.to_f64();
-    numbers.as_chunks().0.to_vec()
 }
 
 /// The first acoustic mode between two walls `cells` apart: its period over 2L/c, less 1, and what

@@ -2,7 +2,7 @@
 
 use super::*;
 use eframe::egui::{self, Modifiers, PointerButton, pos2};
-use lahar::{Command, PointerAction};
+use lahar::{Command, Pointer, PointerAction};
 use lahar_app::hand::Grip;
 
 fn press(harness: &Harness<'_, AppState>, pos: egui::Pos2, button: PointerButton, pressed: bool) {
@@ -14,6 +14,18 @@ fn press(harness: &Harness<'_, AppState>, pos: egui::Pos2, button: PointerButton
     });
 }
 
+/// The hand that the simulation is told of when `button` goes down at `at`.
+fn held(harness: &mut Harness<'_, AppState>, at: egui::Pos2, button: PointerButton) -> Pointer {
+    harness.hover_at(at);
+    press(harness, at, button, true);
+    harness.run();
+    let orders_now = orders(harness);
+    let Some(Order::Tell(Command::Pointer(Some(pointer)))) = orders_now.last() else {
+        panic!("{orders_now:?}");
+    };
+    *pointer
+}
+
 #[test]
 fn the_left_button_attracts_and_the_right_repels_until_released() {
     let mut harness = harness("dam-break");
@@ -22,13 +34,7 @@ fn the_left_button_attracts_and_the_right_repels_until_released() {
         (PointerButton::Secondary, -1.0),
     ] {
         let at = pos2(700.0, 400.0);
-        harness.hover_at(at);
-        press(&harness, at, button, true);
-        harness.run();
-        let orders_now = orders(&mut harness);
-        let Some(Order::Tell(Command::Pointer(Some(pointer)))) = orders_now.last() else {
-            panic!("{orders_now:?}");
-        };
+        let pointer = held(&mut harness, at, button);
         // The domain is 2 m by 1.2 m, and in view.
         assert!((0.0..2.0).contains(&pointer.position[0]), "{pointer:?}");
         assert!((0.0..1.2).contains(&pointer.position[1]), "{pointer:?}");
@@ -54,13 +60,7 @@ fn where_the_scene_says_so_the_left_button_pushes_and_the_right_pulls() {
         (PointerButton::Secondary, -5.0),
     ] {
         let at = pos2(700.0, 400.0);
-        harness.hover_at(at);
-        press(&harness, at, button, true);
-        harness.run();
-        let orders_now = orders(&mut harness);
-        let Some(Order::Tell(Command::Pointer(Some(pointer)))) = orders_now.last() else {
-            panic!("{orders_now:?}");
-        };
+        let pointer = held(&mut harness, at, button);
         let expected = PointerAction::Push {
             acceleration: push,
             power: 4.0,

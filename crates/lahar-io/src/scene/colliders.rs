@@ -3,7 +3,7 @@
 use super::Limits;
 use super::document::{Sources, Span, Value, from_json};
 use super::files::Files;
-use super::plan::contact_word;
+use super::plan::contact_with_friction;
 use super::read::Reader;
 use super::shapes::read_shape;
 use crate::error::SceneError;
@@ -114,16 +114,7 @@ fn read_collider<const D: usize>(
             .error_at("shape", format!("a collider cannot be a {what} yet"))
             .hint("boxes, balls, half-spaces, polygons, cylinders, capsules and unions of them are possible, and scale by one number, rotate, translate, copies")
     })?;
-    let mut contact = contact_word(table.text("contact")?);
-    if let Some(given) = table.opt_number("friction") {
-        match &mut contact {
-            Contact::Slip { friction } | Contact::Separate { friction } => *friction = given,
-            Contact::Sticky | Contact::Open => {
-                return Err(table
-                    .error_at_key("friction", "friction is for \"slip\" and \"separate\" only"));
-            }
-        }
-    }
+    let contact = contact_with_friction(table)?;
     let center = match table.opt_vector("center") {
         Some(center) => center,
         None => middle(&shape, &solids),

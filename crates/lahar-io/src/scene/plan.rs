@@ -715,7 +715,7 @@ fn read_walls<const D: usize>(domain: &Reader<'_>) -> Result<([Sides; D], WallSt
     Ok((sides, style))
 }
 
-pub(super) fn contact_word(word: &str) -> Contact {
+fn contact_word(word: &str) -> Contact {
     match word {
         "sticky" => Contact::Sticky,
         "slip" => Contact::Slip { friction: 0.0 },
@@ -728,9 +728,12 @@ fn read_contact(walls: &Reader<'_>, side: &str) -> Result<Option<Contact>, Scene
     if let Some(word) = walls.opt_text(side) {
         return Ok(Some(contact_word(word)));
     }
-    let Some(table) = walls.opt_table(side) else {
-        return Ok(None);
-    };
+    let table = walls.opt_table(side);
+    table.map(|table| contact_with_friction(&table)).transpose()
+}
+
+/// `contact` and `friction` of a wall or a collider.
+pub(super) fn contact_with_friction(table: &Reader<'_>) -> Result<Contact, SceneError> {
     let mut contact = contact_word(table.text("contact")?);
     if let Some(given) = table.opt_number("friction") {
         match &mut contact {
@@ -741,7 +744,7 @@ fn read_contact(walls: &Reader<'_>, side: &str) -> Result<Option<Contact>, Scene
             }
         }
     }
-    Ok(Some(contact))
+    Ok(contact)
 }
 
 fn read_material<const D: usize>(

@@ -91,7 +91,8 @@ pub struct VolumeCorrection {
 }
 
 impl Default for VolumeCorrection {
-    /// Anything from half to ten times as much keeps a slosh's volume as well.
+    /// Up to twenty times the smoothing and three times the correction keep a slosh's volume as well
+    /// (docs/water.md).
     fn default() -> Self {
         Self {
             smoothing: 5.0,
