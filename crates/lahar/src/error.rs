@@ -93,6 +93,18 @@ pub enum DtLimit {
 }
 
 impl DtLimit {
+    /// All of them; a checkpoint says which by its place here.
+    pub const ALL: [Self; 8] = [
+        Self::Fixed,
+        Self::Sound,
+        Self::Speed,
+        Self::Collider,
+        Self::Viscosity,
+        Self::Longest,
+        Self::Retry,
+        Self::Frame,
+    ];
+
     /// In a word, for files and screens.
     pub fn name(self) -> &'static str {
         match self {

@@ -1,6 +1,7 @@
 //! Fluids, jelly and snow by the Moving Least Squares Material Point Method, in 2D and 3D.
 
 pub mod boundary;
+pub mod checkpoint;
 pub mod diagnostics;
 mod dispatch;
 pub mod error;
@@ -29,6 +30,7 @@ pub use boundary::{
     BoundaryImpulse, Collider, Contact, Corners, Cushion, Domain, Keyframe, Motion, Sides, Solid,
     WallStyle,
 };
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use diagnostics::Diagnostics;
 pub use error::{DtLimit, Failure, SetupError};
 pub use forces::{AccelerationField, Force, Pull};

@@ -51,12 +51,21 @@ pub(crate) struct Mark<T, const D: usize> {
 
 impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     pub(crate) fn begin(&mut self) {
-        self.control.frame_begins();
         let old = self.mark.take().map(|mark| mark.state);
         self.mark = Some(Mark {
             state: self.save(old),
             attempts: 0,
         });
+        self.control.frame_begins();
+    }
+
+    pub(crate) fn give_up_frame(&mut self) -> bool {
+        let Some(mark) = self.mark.take() else {
+            return false;
+        };
+        self.restore(&mark.state);
+        self.mark = Some(mark);
+        true
     }
 
     pub(crate) fn begin_again(&mut self, failure: &Failure) -> Option<Retry> {
@@ -72,6 +81,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         if attempts > MOST_HALVINGS {
             return None;
         }
+        self.control.frame_begins();
         Some(Retry {
             time: self.control.time(),
             part: self.control.shorten(attempts),

@@ -9,6 +9,7 @@ use crate::boundary::pointer::Push;
 use crate::boundary::surface::put_out;
 use crate::boundary::walls::Walls;
 use crate::boundary::{BoundaryImpulse, Collider};
+use crate::checkpoint::{Checkpoint, CheckpointError};
 use crate::diagnostics::Diagnostics;
 use crate::dispatch;
 use crate::error::{DtLimit, Failure, SetupError};
@@ -127,7 +128,15 @@ pub trait Simulate: Send {
     fn substep(&mut self) -> Result<Advance, Failure>;
     /// Substeps until `time` \[s\]: exactly with an automatic time step, to the nearest substep with
     /// a fixed one.
-    fn advance_to(&mut self, time: f64) -> Result<Advance, Failure>;
+    fn advance_to(&mut self, time: f64) -> Result<Advance, Failure> {
+        self.advance_while(time, &mut || true)
+    }
+    /// [`Self::advance_to`], which ends early when `go_on`, asked before each substep, says no.
+    fn advance_while(
+        &mut self,
+        time: f64,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Advance, Failure>;
     /// Takes effect at the next substep.
     fn command(&mut self, command: Command);
     /// Keeps a copy of the state, which [`Self::retry_frame`] goes back to. A time step that was shortened
@@ -136,6 +145,16 @@ pub trait Simulate: Send {
     /// Goes back to where [`Self::begin_frame`] was called, to go on with half the time step of the last
     /// attempt; commands given since stay. `None` if that was never called, or has been tried to 1/64.
     fn retry_frame(&mut self, failure: &Failure) -> Option<Retry>;
+    /// Goes back to where [`Self::begin_frame`] was called, as if it had not been; false if it was not.
+    fn give_up_frame(&mut self) -> bool;
+    /// All that decides how it goes on, besides its setup; between frames.
+    fn checkpoint(&self) -> Checkpoint;
+    /// Goes on from `checkpoint`, which a simulation of the same setup has given: with the same bits as that
+    /// one.
+    ///
+    /// # Errors
+    /// It is not of such a simulation, or damaged; this one stays as it was.
+    fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError>;
     /// A copy of `fields`, rows by ascending id.
     fn snapshot(&self, fields: &[Field]) -> Snapshot;
     /// Totals now. Sorts first if the next substep would: the run's bits do not change.
@@ -1076,13 +1095,20 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
         })
     }
 
-    fn advance_to(&mut self, time: f64) -> Result<Advance, Failure> {
+    fn advance_while(
+        &mut self,
+        time: f64,
+        go_on: &mut dyn FnMut() -> bool,
+    ) -> Result<Advance, Failure> {
         let mut advance = Advance {
             substeps: 0,
             dt_min: f64::INFINITY,
             limit: DtLimit::Frame,
         };
         while let Some((dt, limit)) = self.control.towards(time) {
+            if !go_on() {
+                return Ok(advance);
+            }
             self.substep_of(dt, limit)?;
             advance.substeps += 1;
             if dt < advance.dt_min {
@@ -1109,6 +1135,22 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
 
     fn retry_frame(&mut self, failure: &Failure) -> Option<Retry> {
         self.begin_again(failure)
+    }
+
+    fn give_up_frame(&mut self) -> bool {
+        Self::give_up_frame(self)
+    }
+
+    fn checkpoint(&self) -> Checkpoint {
+        self.write()
+    }
+
+    fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        let (state, starts) = self.read(checkpoint)?;
+        self.restore(&state);
+        self.starts = starts;
+        self.mark = None;
+        Ok(())
     }
 
     fn snapshot(&self, fields: &[Field]) -> Snapshot {

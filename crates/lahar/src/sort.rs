@@ -199,5 +199,7 @@ fn permute<U: Copy + Default + Send + Sync>(
 
 /// Whether a block can be named.
 pub(crate) fn in_range<const D: usize>(block: [i32; D]) -> bool {
-    block.iter().all(|b| b.abs() < BLOCK_LIMIT)
+    block
+        .iter()
+        .all(|b| b.unsigned_abs() < BLOCK_LIMIT.unsigned_abs())
 }

@@ -1,4 +1,5 @@
-//! All that decides how a simulation goes on, besides its setup: what is kept to go back to.
+//! All that decides how a simulation goes on, besides its setup: what is kept to go back to, in memory
+//! (retry.rs) or as named arrays (checkpoint.rs).
 //!
 //! ```text
 //! Simulation ──save──▶ State ──restore──▶ Simulation
@@ -17,26 +18,26 @@ use crate::store::{Group, PerParticle, Run};
 /// The state between two substeps. Rows are kept in their order and sorted as long ago as they are:
 /// what follows has the same bits.
 pub(crate) struct State<T, const D: usize> {
-    groups: Vec<Rows<T, D>>,
-    drift: f64,
-    uncorrected: f64,
-    taken: Vec<Taken<D>>,
-    readings: Vec<Readings>,
-    escaped: Escaped,
-    control: StepControl,
-    next_id: u32,
-    gravity: [f64; D],
-    pointer: Option<Pointer>,
+    pub(crate) groups: Vec<Rows<T, D>>,
+    pub(crate) drift: f64,
+    pub(crate) uncorrected: f64,
+    pub(crate) taken: Vec<Taken<D>>,
+    pub(crate) readings: Vec<Readings>,
+    pub(crate) escaped: Escaped,
+    pub(crate) control: StepControl,
+    pub(crate) next_id: u32,
+    pub(crate) gravity: [f64; D],
+    pub(crate) pointer: Option<Pointer>,
 }
 
 /// The particles of a group.
-struct Rows<T, const D: usize> {
-    columns: Vec<Vec<T>>,
-    mass: PerParticle<T>,
-    volume0: PerParticle<T>,
-    id: Vec<u32>,
-    body: PerParticle<u32>,
-    runs: Vec<Run<D>>,
+pub(crate) struct Rows<T, const D: usize> {
+    pub(crate) columns: Vec<Vec<T>>,
+    pub(crate) mass: PerParticle<T>,
+    pub(crate) volume0: PerParticle<T>,
+    pub(crate) id: Vec<u32>,
+    pub(crate) body: PerParticle<u32>,
+    pub(crate) runs: Vec<Run<D>>,
 }
 
 impl<T: Lanes, const D: usize> State<T, D> {

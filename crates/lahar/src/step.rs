@@ -13,6 +13,9 @@ const CLEAN_FRAMES: u32 = 4;
 /// So many failed frames make recovering no slower.
 const MOST_PATIENCE: u32 = 12;
 
+/// More parts of a substep than any number of frames that failed asks for.
+const MOST_PARTS: f64 = 9007199254740992.0;
+
 /// Substeps left to a moment that are still evened out, so that the last is not a splinter.
 const EVEN_OUT: f64 = 2.0;
 
@@ -66,6 +69,97 @@ impl StepControl {
             failed_frames: 0,
             changed: (0.0, 0),
         }
+    }
+
+    /// All that is not setup, for checkpoints.
+    pub(crate) fn numbers(&self) -> ([f64; 10], [u64; 5]) {
+        // By name, so that a new field asks whether it belongs here.
+        let Self {
+            step: _,
+            dx: _,
+            speed,
+            boundary_speed,
+            wave_speed,
+            viscosity,
+            gravity,
+            field,
+            substeps,
+            time,
+            shortest,
+            part,
+            clean_frames,
+            failed_frames,
+            changed,
+        } = *self;
+        (
+            [
+                speed,
+                boundary_speed,
+                wave_speed,
+                viscosity,
+                gravity,
+                field,
+                time,
+                shortest.0,
+                part,
+                changed.0,
+            ],
+            [
+                substeps,
+                shortest.1 as u64,
+                u64::from(clean_frames),
+                u64::from(failed_frames),
+                changed.1,
+            ],
+        )
+    }
+
+    /// This with what [`Self::numbers`] has given; `None` if it cannot have given them.
+    pub(crate) fn with_numbers(&self, numbers: [f64; 10], counts: [u64; 5]) -> Option<Self> {
+        let [
+            speed,
+            boundary_speed,
+            wave_speed,
+            viscosity,
+            gravity,
+            field,
+            time,
+            shortest,
+            part,
+            changed,
+        ] = numbers;
+        let [
+            substeps,
+            limit,
+            clean_frames,
+            failed_frames,
+            changed_substeps,
+        ] = counts;
+        let whole_parts = 1.0 / part;
+        let sound = numbers.iter().all(|x| *x >= 0.0)
+            && time.is_finite()
+            && changed.is_finite()
+            && changed_substeps <= substeps
+            && (1.0..=MOST_PARTS).contains(&whole_parts)
+            && (whole_parts as u64).is_power_of_two();
+        sound.then_some(())?;
+        Some(Self {
+            step: self.step,
+            dx: self.dx,
+            speed,
+            boundary_speed,
+            wave_speed,
+            viscosity,
+            gravity,
+            field,
+            substeps,
+            time,
+            shortest: (shortest, *DtLimit::ALL.get(usize::try_from(limit).ok()?)?),
+            part,
+            clean_frames: u32::try_from(clean_frames).ok()?,
+            failed_frames: u32::try_from(failed_frames).ok()?,
+            changed: (changed, changed_substeps),
+        })
     }
 
     /// Simulated time \[s\].

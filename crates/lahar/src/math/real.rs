@@ -161,6 +161,10 @@ pub trait Scalar:
     fn to_index(self) -> usize;
     /// As a column of a snapshot.
     fn data(values: Vec<Self>) -> crate::particles::Data;
+    /// As an array of a checkpoint.
+    fn values(values: Vec<Self>) -> crate::checkpoint::Values;
+    /// From an array of a checkpoint, if it is of this type.
+    fn from_values(values: crate::checkpoint::Values) -> Option<Vec<Self>>;
     /// e to the power self, the same bits on every machine.
     fn exp_scalar(self) -> Self;
     /// Natural logarithm, the same bits on every machine.
@@ -247,6 +251,15 @@ macro_rules! scalar {
             }
             fn data(values: Vec<Self>) -> crate::particles::Data {
                 crate::particles::Data::$variant(values)
+            }
+            fn values(values: Vec<Self>) -> crate::checkpoint::Values {
+                crate::checkpoint::Values::$variant(values)
+            }
+            fn from_values(values: crate::checkpoint::Values) -> Option<Vec<Self>> {
+                match values {
+                    crate::checkpoint::Values::$variant(values) => Some(values),
+                    _ => None,
+                }
             }
             #[inline(always)]
             fn to_index(self) -> usize {

@@ -100,11 +100,11 @@ pub struct ProbeSample {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Readings {
     /// Those that were not taken yet.
-    samples: Vec<ProbeSample>,
+    pub(crate) samples: Vec<ProbeSample>,
     /// Time \[s\] of the last one, and the impulse \[N s\] that its boundary had taken till then.
-    last: (f64, [f64; 3]),
+    pub(crate) last: (f64, [f64; 3]),
     /// The impulse on the face of a gauge in a wall since then, per area \[N s/m²; N s/m² in 2D too\].
-    pressed: f64,
+    pub(crate) pressed: f64,
 }
 
 /// The readings of one probe.

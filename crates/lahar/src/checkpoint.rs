@@ -1,0 +1,578 @@
+//! The state of a simulation as named arrays, for files to keep.
+//!
+//! ```text
+//! Simulation ──checkpoint──▶ Checkpoint ──resume──▶ Simulation of the same setup
+//!            State (state.rs)            State, checked
+//! ```
+//! Rows keep their order and their blocks, so that what follows has the same bits as if nothing had been
+//! kept. Reading believes nothing: an array that is missing, of another length, not finite or out of place is
+//! an error by its name.
+
+use crate::boundary::impulse::Taken;
+use crate::instance::Instance;
+use crate::math::Vector;
+use crate::probe::{ProbeSample, Readings};
+use crate::simulation::{Pointer, PointerAction, Simulation};
+use crate::sort::{DRIFT_LIMIT, Escaped, in_range};
+use crate::state::{Rows, State};
+use crate::store::{Group, Layout, PerParticle, Run, block_edge};
+use core::fmt;
+
+/// The state of a simulation between two frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint {
+    /// Every array once.
+    pub arrays: Vec<Array>,
+}
+
+/// An array of a checkpoint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Array {
+    /// What it is, like "materials.0.position.1" or "drift".
+    pub name: String,
+    /// Its lengths, the slowest axis first; none for a single number.
+    pub shape: Vec<usize>,
+    /// Its numbers.
+    pub values: Values,
+}
+
+/// Numbers of an array.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Single precision.
+    F32(Vec<f32>),
+    /// Double precision.
+    F64(Vec<f64>),
+    /// Whole numbers.
+    U32(Vec<u32>),
+    /// Whole numbers of either sign.
+    I32(Vec<i32>),
+    /// Large whole numbers.
+    U64(Vec<u64>),
+}
+
+impl Values {
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::F32(values) => values.len(),
+            Self::F64(values) => values.len(),
+            Self::U32(values) => values.len(),
+            Self::I32(values) => values.len(),
+            Self::U64(values) => values.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    fn f64s(self) -> Option<Vec<f64>> {
+        match self {
+            Self::F64(values) => Some(values),
+            _ => None,
+        }
+    }
+
+    fn u32s(self) -> Option<Vec<u32>> {
+        match self {
+            Self::U32(values) => Some(values),
+            _ => None,
+        }
+    }
+
+    fn i32s(self) -> Option<Vec<i32>> {
+        match self {
+            Self::I32(values) => Some(values),
+            _ => None,
+        }
+    }
+
+    fn u64s(self) -> Option<Vec<u64>> {
+        match self {
+            Self::U64(values) => Some(values),
+            _ => None,
+        }
+    }
+}
+
+/// A checkpoint that a simulation cannot go on from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CheckpointError {
+    /// The array, by its name.
+    pub array: String,
+    /// What is wrong with it.
+    pub what: String,
+}
+
+impl fmt::Display for CheckpointError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "array \"{}\": {}", self.array, self.what)
+    }
+}
+
+impl core::error::Error for CheckpointError {}
+
+fn wrong<R>(array: &str, what: impl Into<String>) -> Result<R, CheckpointError> {
+    Err(CheckpointError {
+        array: array.into(),
+        what: what.into(),
+    })
+}
+
+/// What a column of a group holds, and the number of its component.
+fn column_name(column: usize, dimension: usize) -> (&'static str, usize) {
+    if column >= Layout::strain(dimension) {
+        ("strain", column - Layout::strain(dimension))
+    } else if column >= Layout::affine(dimension) {
+        ("affine", column - Layout::affine(dimension))
+    } else if column >= Layout::velocity(dimension) {
+        ("velocity", column - Layout::velocity(dimension))
+    } else {
+        ("position", column)
+    }
+}
+
+/// Of one number for all a single number, else an array.
+fn shape_of<T>(of: &PerParticle<T>) -> Vec<usize> {
+    match of {
+        PerParticle::Uniform(_) => Vec::new(),
+        PerParticle::Each(values) => vec![values.len()],
+    }
+}
+
+fn numbers_of<T>(of: PerParticle<T>) -> Vec<T> {
+    match of {
+        PerParticle::Uniform(value) => vec![value],
+        PerParticle::Each(values) => values,
+    }
+}
+
+/// Arrays on their way into a checkpoint.
+#[derive(Default)]
+struct Out(Vec<Array>);
+
+impl Out {
+    fn put(&mut self, name: impl Into<String>, shape: &[usize], values: Values) {
+        self.0.push(Array {
+            name: name.into(),
+            shape: shape.to_vec(),
+            values,
+        });
+    }
+
+    fn number(&mut self, name: &str, value: f64) {
+        self.put(name, &[], Values::F64(vec![value]));
+    }
+}
+
+/// A hand as numbers: where, radius, softening, what it does.
+const POINTER: usize = 9;
+
+fn pointer_numbers(pointer: &Pointer) -> [f64; POINTER] {
+    let (kind, [a, b, c]) = match pointer.action {
+        PointerAction::Attract(strength) => (0.0, [strength, 0.0, 0.0]),
+        PointerAction::Drag(velocity) => (1.0, velocity),
+        PointerAction::Push {
+            acceleration,
+            power,
+        } => (2.0, [acceleration, power, 0.0]),
+    };
+    let [x, y, z] = pointer.position;
+    [x, y, z, pointer.radius, pointer.softening, kind, a, b, c]
+}
+
+fn pointer_from([x, y, z, radius, softening, kind, a, b, c]: [f64; POINTER]) -> Option<Pointer> {
+    let action = match kind {
+        0.0 => PointerAction::Attract(a),
+        1.0 => PointerAction::Drag([a, b, c]),
+        2.0 => PointerAction::Push {
+            acceleration: a,
+            power: b,
+        },
+        _ => return None,
+    };
+    Some(Pointer {
+        position: [x, y, z],
+        radius,
+        softening,
+        action,
+    })
+}
+
+/// A state, and where particles started if that is asked for.
+type Kept<T, const D: usize> = (State<T, D>, Option<Vec<[f64; D]>>);
+
+impl<T: Instance<D>, const D: usize> Simulation<T, D> {
+    pub(crate) fn write(&self) -> Checkpoint {
+        // By name, so that a new field asks for its array.
+        let State {
+            groups,
+            drift,
+            uncorrected,
+            taken,
+            readings,
+            escaped,
+            control,
+            next_id,
+            gravity,
+            pointer,
+        } = self.save(None);
+        let mut out = Out::default();
+        let (numbers, counts) = control.numbers();
+        out.put("step", &[numbers.len()], Values::F64(numbers.to_vec()));
+        out.put("counts", &[counts.len()], Values::U64(counts.to_vec()));
+        out.number("drift", drift);
+        out.number("uncorrected", uncorrected);
+        out.put("gravity", &[D], Values::F64(gravity.to_vec()));
+        let hand = pointer.as_ref().map(pointer_numbers);
+        let hand = hand.map_or_else(Vec::new, |hand| hand.to_vec());
+        out.put("pointer", &[hand.len()], Values::F64(hand));
+        out.put("next_id", &[], Values::U32(vec![next_id]));
+        out.put("escaped.count", &[], Values::U64(vec![escaped.count]));
+        out.number("escaped.mass", escaped.mass);
+        let flat = |taken: &Taken<D>| taken.impulse.0.into_iter().chain(taken.angular);
+        out.put(
+            "taken",
+            &[taken.len(), D + 3],
+            Values::F64(taken.iter().flat_map(flat).collect()),
+        );
+        for (index, readings) in readings.into_iter().enumerate() {
+            let (time, impulse) = readings.last;
+            let last = [time, impulse[0], impulse[1], impulse[2], readings.pressed];
+            let name = format!("probes.{index}.last");
+            out.put(name, &[last.len()], Values::F64(last.to_vec()));
+            let width = 1 + self.setup.probes[index].gauge.columns().len();
+            let count = readings.samples.len();
+            let flat = |sample: ProbeSample| core::iter::once(sample.time).chain(sample.values);
+            let samples = readings.samples.into_iter().flat_map(flat).collect();
+            let name = format!("probes.{index}.samples");
+            out.put(name, &[count, width], Values::F64(samples));
+        }
+        if let Some(starts) = &self.starts {
+            let shape = [starts.len(), D];
+            out.put(
+                "starts",
+                &shape,
+                Values::F64(starts.as_flattened().to_vec()),
+            );
+        }
+        for (index, rows) in groups.into_iter().enumerate() {
+            write_rows(&mut out, &format!("materials.{index}"), rows);
+        }
+        Checkpoint { arrays: out.0 }
+    }
+
+    /// What is in `checkpoint`.
+    pub(crate) fn read(&self, checkpoint: Checkpoint) -> Result<Kept<T, D>, CheckpointError> {
+        let mut arrays = In(checkpoint.arrays);
+        let Some(control) = self
+            .control
+            .with_numbers(arrays.numbers("step")?, arrays.counts("counts")?)
+        else {
+            return wrong("step", "with \"counts\" is no state of a time step");
+        };
+        let next_id = arrays.id("next_id")?;
+        let state = State {
+            drift: arrays.number("drift", 0.0..=f64::MAX)?,
+            uncorrected: arrays.number("uncorrected", 0.0..=f64::MAX)?,
+            taken: self.read_taken(&mut arrays)?,
+            readings: self.read_readings(&mut arrays)?,
+            escaped: Escaped {
+                count: arrays.counts::<1>("escaped.count")?[0],
+                mass: arrays.number("escaped.mass", 0.0..=f64::MAX)?,
+            },
+            control,
+            next_id,
+            gravity: arrays.numbers("gravity")?,
+            pointer: arrays.pointer()?,
+            groups: (self.groups.iter().enumerate())
+                .map(|(index, group)| {
+                    read_rows(&mut arrays, &format!("materials.{index}"), group, next_id)
+                })
+                .collect::<Result<_, _>>()?,
+        };
+        let mut ids: Vec<u32> = Vec::new();
+        for rows in &state.groups {
+            ids.extend(&rows.id);
+        }
+        ids.sort_unstable();
+        if let Some(pair) = ids.windows(2).find(|pair| pair[0] == pair[1]) {
+            return wrong("id", format!("there are two particles {}", pair[0]));
+        }
+        let starts = match self.starts {
+            Some(_) => {
+                let (shape, values) = arrays.f64s("starts")?;
+                if shape != [next_id as usize, D] {
+                    return wrong("starts", "is not as long as there are ids");
+                }
+                Some(values.as_chunks().0.to_vec())
+            }
+            None => None,
+        };
+        match arrays.0.first() {
+            Some(more) => wrong(&more.name, "does not belong to this scene"),
+            None => Ok((state, starts)),
+        }
+    }
+
+    fn read_taken(&self, arrays: &mut In) -> Result<Vec<Taken<D>>, CheckpointError> {
+        let (shape, values) = arrays.f64s("taken")?;
+        if shape != [self.taken.len(), D + 3] {
+            return wrong("taken", "is not of this scene's walls and colliders");
+        }
+        let one = |row: &[f64]| Taken {
+            impulse: Vector(core::array::from_fn(|axis| row[axis])),
+            angular: core::array::from_fn(|axis| row[D + axis]),
+        };
+        Ok(values.chunks_exact(D + 3).map(one).collect())
+    }
+
+    fn read_readings(&self, arrays: &mut In) -> Result<Vec<Readings>, CheckpointError> {
+        let one = |(index, probe): (usize, &crate::Probe<D>)| {
+            let [time, x, y, z, pressed] = arrays.numbers(&format!("probes.{index}.last"))?;
+            let name = format!("probes.{index}.samples");
+            let (shape, values) = arrays.f64s(&name)?;
+            let width = 1 + probe.gauge.columns().len();
+            if shape.len() != 2 || shape[1] != width {
+                return wrong(&name, format!("is not of the probe \"{}\"", probe.name));
+            }
+            let sample = |row: &[f64]| ProbeSample {
+                time: row[0],
+                values: row[1..].to_vec(),
+            };
+            Ok(Readings {
+                samples: values.chunks_exact(width).map(sample).collect(),
+                last: (time, [x, y, z]),
+                pressed,
+            })
+        };
+        self.setup.probes.iter().enumerate().map(one).collect()
+    }
+}
+
+fn write_rows<T: Instance<D>, const D: usize>(out: &mut Out, of: &str, rows: Rows<T, D>) {
+    let Rows {
+        columns,
+        mass,
+        volume0,
+        id,
+        body,
+        runs,
+    } = rows;
+    for (column, values) in columns.into_iter().enumerate() {
+        let (what, component) = column_name(column, D);
+        let name = format!("{of}.{what}.{component}");
+        out.put(name, &[values.len()], T::values(values));
+    }
+    for (what, values) in [("mass", mass), ("volume0", volume0)] {
+        let shape = shape_of(&values);
+        out.put(
+            format!("{of}.{what}"),
+            &shape,
+            T::values(numbers_of(values)),
+        );
+    }
+    out.put(format!("{of}.id"), &[id.len()], Values::U32(id));
+    let shape = shape_of(&body);
+    out.put(format!("{of}.body"), &shape, Values::U32(numbers_of(body)));
+    let blocks = runs.iter().flat_map(|run| run.block).collect();
+    out.put(
+        format!("{of}.runs.block"),
+        &[runs.len(), D],
+        Values::I32(blocks),
+    );
+    let starts = runs.iter().map(|run| run.start).collect();
+    out.put(
+        format!("{of}.runs.start"),
+        &[runs.len()],
+        Values::U32(starts),
+    );
+}
+
+fn read_rows<T: Instance<D>, const D: usize>(
+    arrays: &mut In,
+    of: &str,
+    group: &Group<T, D>,
+    next_id: u32,
+) -> Result<Rows<T, D>, CheckpointError> {
+    let name = format!("{of}.id");
+    let (_, id) = arrays.take(&name, Values::u32s)?;
+    let count = id.len();
+    if id.iter().any(|&id| id >= next_id) {
+        return wrong(&name, "has numbers that were never given");
+    }
+    // A tile's margin, and rounding of sums of steps.
+    let reach = 0.5 * block_edge(D) as f64 + DRIFT_LIMIT + 1e-3;
+    let mut columns = Vec::with_capacity(group.columns.len());
+    for column in 0..group.columns.len() {
+        let (what, component) = column_name(column, D);
+        let name = format!("{of}.{what}.{component}");
+        let (_, values) = arrays.take(&name, T::from_values)?;
+        if values.len() != count {
+            return wrong(&name, format!("has {} of {count} numbers", values.len()));
+        }
+        let most = if what == "position" { reach } else { f64::MAX };
+        if let Some(bad) = values.iter().position(|x| !(x.to_f64().abs() <= most)) {
+            let value = values[bad].to_f64();
+            return wrong(&name, format!("{value} of row {bad} is out of range"));
+        }
+        columns.push(values);
+    }
+    let positive = |x: &T| x.to_f64() > 0.0 && x.to_f64().is_finite();
+    let mut per_particle = |what: &str| {
+        let name = format!("{of}.{what}");
+        let (shape, values) = arrays.take(&name, T::from_values)?;
+        if count > 0 && !values.iter().all(positive) {
+            return wrong(&name, "must be positive numbers");
+        }
+        uniform_or_each(&name, &shape, values, count)
+    };
+    let (mass, volume0) = (per_particle("mass")?, per_particle("volume0")?);
+    let name = format!("{of}.body");
+    let (shape, values) = arrays.take(&name, Values::u32s)?;
+    let body = uniform_or_each(&name, &shape, values, count)?;
+    Ok(Rows {
+        columns,
+        mass,
+        volume0,
+        id,
+        body,
+        runs: read_runs(arrays, of, count)?,
+    })
+}
+
+fn uniform_or_each<T: Copy>(
+    name: &str,
+    shape: &[usize],
+    values: Vec<T>,
+    count: usize,
+) -> Result<PerParticle<T>, CheckpointError> {
+    match (shape, values.as_slice()) {
+        ([], &[value]) => Ok(PerParticle::Uniform(value)),
+        ([n], _) if *n == count => Ok(PerParticle::Each(values)),
+        _ => wrong(name, format!("is neither one number nor {count}")),
+    }
+}
+
+/// Runs cover all rows, blocks ascending.
+fn read_runs<const D: usize>(
+    arrays: &mut In,
+    of: &str,
+    count: usize,
+) -> Result<Vec<Run<D>>, CheckpointError> {
+    let name = format!("{of}.runs.block");
+    let (shape, blocks) = arrays.take(&name, Values::i32s)?;
+    if shape.len() != 2 || shape[1] != D {
+        return wrong(&name, format!("has not {D} coordinates a block"));
+    }
+    let blocks: &[[i32; D]] = blocks.as_chunks().0;
+    if !blocks.iter().all(|block| in_range(*block)) || !blocks.is_sorted_by(|a, b| a < b) {
+        return wrong(&name, "must ascend, within the range of blocks");
+    }
+    let name = format!("{of}.runs.start");
+    let (_, starts) = arrays.take(&name, Values::u32s)?;
+    let end = u32::try_from(count).unwrap_or(u32::MAX);
+    let ends = starts.iter().skip(1).copied().chain([end]);
+    let covers = starts.first().map_or(count == 0, |first| *first == 0)
+        && starts
+            .iter()
+            .zip(ends.clone())
+            .all(|(start, end)| *start < end);
+    if starts.len() != blocks.len() || !covers {
+        return wrong(&name, "does not say which rows are in which block");
+    }
+    let run = |((block, start), end): ((&[i32; D], u32), u32)| Run {
+        block: *block,
+        start,
+        end,
+        tile: 0,
+        first: false,
+    };
+    let starts = starts.iter().copied();
+    Ok(blocks.iter().zip(starts).zip(ends).map(run).collect())
+}
+
+/// Arrays of a checkpoint that were not read yet.
+struct In(Vec<Array>);
+
+impl In {
+    /// The array of that name: its shape, and its numbers by `of`, which turns away other types.
+    fn take<V>(
+        &mut self,
+        name: &str,
+        of: impl Fn(Values) -> Option<Vec<V>>,
+    ) -> Result<(Vec<usize>, Vec<V>), CheckpointError> {
+        let Some(index) = self.0.iter().position(|array| array.name == name) else {
+            return wrong(name, "is missing");
+        };
+        // Arrays mostly come in the order in which they are asked for.
+        let array = self.0.remove(index);
+        let length = array
+            .shape
+            .iter()
+            .try_fold(1, |n: usize, m| n.checked_mul(*m));
+        if length != Some(array.values.len()) {
+            return wrong(name, "is not as long as its shape says");
+        }
+        match of(array.values) {
+            Some(values) => Ok((array.shape, values)),
+            None => wrong(name, "is of another type of numbers"),
+        }
+    }
+
+    /// An array of double precision, none of it a NaN.
+    fn f64s(&mut self, name: &str) -> Result<(Vec<usize>, Vec<f64>), CheckpointError> {
+        let (shape, values) = self.take(name, Values::f64s)?;
+        if values.iter().any(|x| x.is_nan()) {
+            return wrong(name, "has something that is no number");
+        }
+        Ok((shape, values))
+    }
+
+    fn numbers<const N: usize>(&mut self, name: &str) -> Result<[f64; N], CheckpointError> {
+        let (_, values) = self.f64s(name)?;
+        let length = values.len();
+        let all = values.try_into().ok();
+        all.map_or_else(|| wrong(name, format!("has {length} of {N} numbers")), Ok)
+    }
+
+    fn number(
+        &mut self,
+        name: &str,
+        range: core::ops::RangeInclusive<f64>,
+    ) -> Result<f64, CheckpointError> {
+        let [value] = self.numbers(name)?;
+        if range.contains(&value) {
+            Ok(value)
+        } else {
+            wrong(name, format!("{value} is out of range"))
+        }
+    }
+
+    fn counts<const N: usize>(&mut self, name: &str) -> Result<[u64; N], CheckpointError> {
+        let (_, values) = self.take(name, Values::u64s)?;
+        let all = values.try_into().ok();
+        all.map_or_else(|| wrong(name, format!("has not {N} numbers")), Ok)
+    }
+
+    fn id(&mut self, name: &str) -> Result<u32, CheckpointError> {
+        let (_, values) = self.take(name, Values::u32s)?;
+        match values[..] {
+            [id] => Ok(id),
+            _ => wrong(name, "is not one number"),
+        }
+    }
+
+    fn pointer(&mut self) -> Result<Option<Pointer>, CheckpointError> {
+        let (_, values) = self.f64s("pointer")?;
+        if values.is_empty() {
+            return Ok(None);
+        }
+        let pointer = <[f64; POINTER]>::try_from(values)
+            .ok()
+            .and_then(pointer_from);
+        pointer.map_or_else(|| wrong("pointer", "is no hand"), |hand| Ok(Some(hand)))
+    }
+}

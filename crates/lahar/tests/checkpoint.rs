@@ -1,0 +1,356 @@
+//! A run that goes on from a checkpoint has the bits of one that was never interrupted.
+
+#[expect(dead_code, reason = "other tests use the rest")]
+mod common;
+
+use common::{ALL, bits, brawl, crowd};
+use lahar::checkpoint::{Array, Values};
+use lahar::{
+    AccelerationField, Checkpoint, Command, Contact, Diagnostics, Force, Gauge, Instance,
+    ParticleBatch, Plate, Pointer, PointerAction, Probe, ProbeSamples, Setup, Simulate, Simulation,
+    TimeStep, frame,
+};
+use std::sync::Arc;
+
+const FRAME: f64 = 0.02;
+
+/// A pull to where each particle started.
+#[derive(Debug)]
+struct Spring;
+
+impl<const D: usize> AccelerationField<D> for Spring {
+    fn accelerations(&self, _: f64, x: &[[f64; D]], start: &[[f64; D]], out: &mut [[f64; D]]) {
+        for ((out, x), start) in out.iter_mut().zip(x).zip(start) {
+            *out = core::array::from_fn(|axis| 5.0 * (start[axis] - x[axis]));
+        }
+    }
+    fn depends_on_start(&self) -> bool {
+        true
+    }
+}
+
+/// Everything that is state: colliders, forces from where particles started, gauges of every kind.
+fn eventful<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatch<D>>) {
+    let (mut setup, batches) = brawl::<D>(cells);
+    let size = setup.dx * cells as f64;
+    setup.colliders = crowd(size, Contact::Separate { friction: 0.3 });
+    setup.forces = vec![Force::Field(Arc::new(Spring))];
+    let probe = |name: &str, rate, gauge| Probe {
+        name: name.into(),
+        rate,
+        gauge,
+    };
+    let mut low = [0.5 * size; D];
+    low[1] = 0.0;
+    let mut up = [0.0; D];
+    up[1] = 1.0;
+    setup.probes = vec![
+        probe(
+            "floor",
+            173.0,
+            Gauge::Pressure {
+                at: low,
+                radius: 3.0 * setup.dx,
+                plate: Some(Plate {
+                    normal: up,
+                    width: 4.0 * setup.dx,
+                }),
+            },
+        ),
+        probe(
+            "height",
+            60.0,
+            Gauge::Height {
+                up: 1,
+                column: None,
+            },
+        ),
+        probe(
+            "load",
+            90.0,
+            Gauge::Force {
+                on: "bottom".into(),
+            },
+        ),
+    ];
+    (setup, batches)
+}
+
+/// What a frame leaves.
+type Left = (Vec<u64>, Diagnostics, Vec<ProbeSamples>, u64);
+
+/// Frames `first..=last`, on `threads` threads.
+fn frames(
+    simulation: &mut dyn Simulate,
+    threads: usize,
+    numbers: core::ops::RangeInclusive<u32>,
+) -> Vec<Left> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    let pool = pool.build().expect("a pool");
+    pool.install(|| {
+        numbers
+            .map(|number| {
+                let end = f64::from(number) * FRAME;
+                frame(&mut *simulation, |s| s.advance_to(end), |_| {}).expect("it runs");
+                (
+                    bits(&simulation.snapshot(ALL)),
+                    simulation.diagnostics(),
+                    simulation.take_probe_samples(),
+                    simulation.substeps(),
+                )
+            })
+            .collect()
+    })
+}
+
+fn fresh<T: Instance<D>, const D: usize>(
+    (setup, batches): &(Setup<D>, Vec<ParticleBatch<D>>),
+) -> Simulation<T, D> {
+    Simulation::new(setup.clone(), batches).expect("a good setup")
+}
+
+/// From a checkpoint at any frame, on another number of threads, everything is the same; and a run that
+/// writes checkpoints is the same as one that does not.
+fn goes_on_with_the_same_bits<T: Instance<D>, const D: usize>(
+    scene: &(Setup<D>, Vec<ParticleBatch<D>>),
+) {
+    const FRAMES: u32 = 6;
+    let unbroken = frames(&mut fresh::<T, D>(scene), 1, 1..=FRAMES);
+    let mut first = fresh::<T, D>(scene);
+    let mut drifted = 0;
+    for stop in 0..FRAMES {
+        let checkpoint = first.checkpoint();
+        let drift = checkpoint.arrays.iter().find(|array| array.name == "drift");
+        drifted += usize::from(drift.expect("it is there").values != Values::F64(vec![0.0]));
+        let mut second = fresh::<T, D>(scene);
+        second.resume(checkpoint.clone()).expect("it is whole");
+        assert_eq!(second.checkpoint(), checkpoint);
+        let threads = 1 + stop as usize % 2;
+        let mut left = frames(&mut second, threads, stop + 1..=FRAMES);
+        let mut expected = unbroken[stop as usize..].to_vec();
+        if stop == 0 {
+            // The readings at the start were not taken by anyone: they wait, in both.
+            assert!(left[0].2.iter().all(|probe| probe.samples[0].time == 0.0));
+        }
+        assert!(left == expected, "from frame {stop}");
+        assert_eq!(
+            first.boundary_impulses().len(),
+            2 * D + scene.0.colliders.len()
+        );
+        // The second run is itself broken off and gone on with.
+        let mut third = fresh::<T, D>(scene);
+        third.resume(checkpoint).expect("it is whole");
+        left = frames(&mut third, 1, stop + 1..=stop + 1);
+        expected.truncate(1);
+        assert!(left == expected, "frame {} alone", stop + 1);
+        let went_on = frames(&mut first, 2, stop + 1..=stop + 1);
+        assert!(went_on[0] == unbroken[stop as usize], "with checkpoints");
+    }
+    assert!(
+        drifted > 2,
+        "rows were sorted long ago in {drifted} checkpoints only"
+    );
+}
+
+#[test]
+fn goes_on_with_the_same_bits_2d() {
+    goes_on_with_the_same_bits::<f32, 2>(&eventful(32));
+    goes_on_with_the_same_bits::<f64, 2>(&eventful(32));
+}
+
+#[test]
+fn goes_on_with_the_same_bits_3d() {
+    goes_on_with_the_same_bits::<f32, 3>(&eventful(16));
+    goes_on_with_the_same_bits::<f64, 3>(&eventful(16));
+}
+
+/// The shortened step of a frame that failed, and how it recovers, are kept.
+#[test]
+fn a_shortened_step_goes_on() {
+    let (mut setup, batches) = brawl::<2>(16);
+    setup.time_step = TimeStep::Fixed(FRAME / 4.0);
+    let scene = (setup, batches);
+    let unbroken = frames(&mut fresh::<f32, 2>(&scene), 1, 1..=12);
+    let retried = unbroken.iter().filter(|left| left.1.dt_limit == "retry");
+    assert!(retried.count() > 3, "the step is too short to fail");
+    let mut simulation = fresh::<f32, 2>(&scene);
+    for number in 1..=12 {
+        let checkpoint = simulation.checkpoint();
+        simulation = fresh(&scene);
+        simulation.resume(checkpoint).expect("it is whole");
+        let left = frames(&mut simulation, 1, number..=number);
+        assert!(left[0] == unbroken[number as usize - 1], "frame {number}");
+    }
+}
+
+/// Gravity as it was turned and the hand as it lies are kept.
+#[test]
+fn what_was_ordered_goes_on() {
+    let scene = brawl::<2>(32);
+    let mut one = fresh::<f32, 2>(&scene);
+    one.command(Command::Gravity([3.0, 0.5, 0.0]));
+    for action in [
+        PointerAction::Attract(20.0),
+        PointerAction::Drag([1.0, 2.0, 0.0]),
+        PointerAction::Push {
+            acceleration: 30.0,
+            power: 2.0,
+        },
+    ] {
+        one.command(Command::Pointer(Some(Pointer {
+            position: [0.5, 0.5, 0.0],
+            radius: 0.3,
+            softening: 0.01,
+            action,
+        })));
+        let mut two = fresh::<f32, 2>(&scene);
+        two.resume(one.checkpoint()).expect("it is whole");
+        assert_eq!(two.gravity(), [3.0, 0.5, 0.0]);
+        let from = (one.time() / FRAME).round() as u32;
+        let ends = [&mut one, &mut two].map(|s| frames(s, 1, from + 1..=from + 2));
+        assert!(ends[0] == ends[1], "{action:?}");
+    }
+}
+
+/// Whoever stops in a frame can go back to its start; what follows is the same.
+#[test]
+fn a_frame_given_up_is_as_if_it_had_not_begun() {
+    let scene = eventful::<2>(32);
+    let unbroken = frames(&mut fresh::<f32, 2>(&scene), 1, 1..=3);
+    let mut simulation = fresh::<f32, 2>(&scene);
+    assert!(!simulation.give_up_frame(), "no frame has begun");
+    frames(&mut simulation, 1, 1..=1);
+    let before = simulation.checkpoint();
+    let mut left = 3;
+    let stop = &mut || {
+        left -= 1;
+        left >= 0
+    };
+    simulation.begin_frame();
+    let done = simulation
+        .advance_while(2.0 * FRAME, stop)
+        .expect("it runs");
+    assert_eq!(done.substeps, 3);
+    assert!(simulation.time() < 2.0 * FRAME);
+    assert!(simulation.give_up_frame());
+    assert_eq!(simulation.checkpoint(), before);
+    let left = frames(&mut simulation, 1, 2..=3);
+    assert!(left == unbroken[1..]);
+}
+
+/// One array less, or other than it was.
+fn damaged(checkpoint: &Checkpoint, index: usize, how: usize) -> Checkpoint {
+    let mut checkpoint = checkpoint.clone();
+    let array = &mut checkpoint.arrays[index];
+    let longer = |array: &mut Array| match &mut array.values {
+        Values::F32(values) => values.push(1.0),
+        Values::F64(values) => values.push(1.0),
+        Values::U32(values) => values.push(1),
+        Values::I32(values) => values.push(1),
+        Values::U64(values) => values.push(1),
+    };
+    match how {
+        0 => drop(checkpoint.arrays.remove(index)),
+        1 => longer(array), // not what the shape says
+        2 => {
+            longer(array);
+            array.shape = vec![array.values.len()];
+        }
+        3 => {
+            let other = Values::F32(vec![0.5; array.values.len()]);
+            array.values = match array.values {
+                Values::F32(_) => Values::U32(vec![0; array.values.len()]),
+                _ => other,
+            };
+        }
+        _ => array.name.push('x'),
+    }
+    checkpoint
+}
+
+/// Every array is asked for and believed in no respect: a wrong one is named, and the simulation stays.
+#[test]
+fn damaged_arrays_are_named_and_nothing_changes() {
+    let scene = eventful::<2>(32);
+    let mut simulation = fresh::<f32, 2>(&scene);
+    frames(&mut simulation, 1, 1..=2);
+    let good = simulation.checkpoint();
+    let mut other = fresh::<f32, 2>(&scene);
+    let before = other.checkpoint();
+    for index in 0..good.arrays.len() {
+        for how in 0..5 {
+            let name = &good.arrays[index].name;
+            let error = other.resume(damaged(&good, index, how));
+            let error = error.expect_err(&format!("{name} damaged by {how}"));
+            assert!(!error.what.is_empty() && error.to_string().contains(&error.array));
+        }
+    }
+    let mut more = good.clone();
+    more.arrays.push(Array {
+        name: "more".into(),
+        shape: vec![],
+        values: Values::U32(vec![1]),
+    });
+    assert_eq!(other.resume(more).expect_err("too much").array, "more");
+    assert!(other.checkpoint() == before);
+    other.resume(good).expect("it is whole");
+}
+
+/// Values that no run leaves.
+#[test]
+fn values_out_of_place_are_refused() {
+    let scene = brawl::<3>(16);
+    let mut simulation = fresh::<f64, 3>(&scene);
+    let good = simulation.checkpoint();
+    let mut refused = |name: &str, change: &dyn Fn(&mut Values)| {
+        let mut bad = good.clone();
+        let array = bad.arrays.iter_mut().find(|array| array.name == name);
+        change(&mut array.unwrap_or_else(|| panic!("there is no {name}")).values);
+        let error = simulation.resume(bad).expect_err(name);
+        assert!(error.to_string().contains(name), "{error}");
+    };
+    let set = |index: usize, to: f64| {
+        move |values: &mut Values| match values {
+            Values::F64(values) => values[index] = to,
+            other => panic!("{other:?}"),
+        }
+    };
+    refused("materials.0.position.1", &set(3, 100.0));
+    refused("materials.0.velocity.0", &set(0, f64::NAN));
+    refused("materials.1.strain.4", &set(0, f64::INFINITY));
+    refused("materials.2.mass", &set(0, -1.0));
+    refused("drift", &set(0, f64::NAN));
+    refused("step", &set(8, 0.3)); // no power of two
+    refused("step", &set(6, -1.0));
+    refused("counts", &|values| {
+        *values = Values::U64(vec![0, 99, 0, 0, 0])
+    });
+    refused("materials.0.id", &|values| {
+        *values = Values::U32(vec![u32::MAX])
+    });
+    refused("materials.0.runs.start", &|values| match values {
+        Values::U32(starts) => starts[0] = 1,
+        other => panic!("{other:?}"),
+    });
+    refused("materials.0.runs.block", &|values| match values {
+        Values::I32(blocks) => blocks[0] = i32::MIN,
+        other => panic!("{other:?}"),
+    });
+    let twice = &|values: &mut Values| match values {
+        Values::U32(ids) => ids[1] = ids[0],
+        other => panic!("{other:?}"),
+    };
+    let mut bad = good.clone();
+    let ids = bad
+        .arrays
+        .iter_mut()
+        .find(|array| array.name == "materials.3.id");
+    twice(&mut ids.expect("there are").values);
+    assert!(
+        simulation
+            .resume(bad)
+            .expect_err("twice")
+            .what
+            .contains("two particles")
+    );
+}
