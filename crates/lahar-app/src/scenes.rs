@@ -3,7 +3,7 @@
 use lahar::Simulate;
 use lahar_io::image::Picture;
 use lahar_io::output::Recording;
-use lahar_io::scene::{ColliderInfo, Controls};
+use lahar_io::scene::{ColliderInfo, Controls, SoundSpeeds};
 
 use crate::colour::ColourBy;
 
@@ -62,6 +62,8 @@ pub struct Facts {
     pub colliders: Vec<ColliderInfo>,
     /// Gravity at the start \[m/s²\].
     pub gravity: [f64; 3],
+    /// What follows when it is changed; `None`: nothing.
+    pub sound_speeds: Option<SoundSpeeds>,
     /// Frames per simulated second \[1/s\].
     pub frame_rate: f64,
     /// Frames of a recording; `None`: it is simulated.

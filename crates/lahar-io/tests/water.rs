@@ -1,12 +1,17 @@
 //! Water as scenes make it: a tank at rest stays as it is, and a tank that sloshes keeps its volume.
 
-use lahar::{Diagnostics, Isa, Simulate};
+use lahar::{Command, Diagnostics, Field, Isa, Simulate};
 use lahar_io::scene::Scene;
 
 const G: f64 = 9.81; // m/s²
 
 /// A tank 1 m wide, filled with water .5 m deep that moves sideways at `velocity` \[m/s\].
 fn tank(extra_material: &str, extra_body: &str, velocity: f64) -> Box<dyn Simulate> {
+    let scene = scene(extra_material, extra_body, velocity, &[]);
+    scene.build(Isa::detect()).expect("it builds").simulation
+}
+
+fn scene(extra_material: &str, extra_body: &str, velocity: f64, changes: &[(&str, &str)]) -> Scene {
     let text = format!(
         r#"
         title = "Tank"
@@ -34,8 +39,11 @@ fn tank(extra_material: &str, extra_body: &str, velocity: f64) -> Box<dyn Simula
         {extra_body}
         "#
     );
-    let scene = Scene::parse(&text, "tank.toml", &[]).expect("a good scene");
-    scene.build(Isa::detect()).expect("it builds").simulation
+    let changes: Vec<(String, String)> = changes
+        .iter()
+        .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
+        .collect();
+    Scene::parse(&text, "tank.toml", &changes).expect("a good scene")
 }
 
 /// Rows of diagnostics every half second for `seconds`.
@@ -99,4 +107,84 @@ fn a_slosh_keeps_its_volume_and_never_gains_energy() {
     }
     let mass = corrected[0].mass;
     assert!(corrected.iter().all(|row| row.mass == mass));
+}
+
+/// When gravity is changed on the way, water of the default speed of sound gets stiffer: pressures stay
+/// as they are at that moment, and afterwards it is not compressed more than before.
+#[test]
+fn automatic_stiffness_follows_gravity() {
+    let automatic = [
+        ("materials.water.sound_speed", "\"auto\""),
+        ("precision", "\"f64\""),
+    ];
+    let mut scene = scene("", "sampling = \"lattice\"", 0.0, &automatic);
+    let speeds = scene.sound_speeds();
+    let speed_of = |command: Command| match command {
+        Command::SoundSpeed { material: 0, speed } => speed,
+        other => panic!("{other:?}"),
+    };
+    let under = |gravity| {
+        speeds
+            .under(gravity)
+            .into_iter()
+            .map(speed_of)
+            .collect::<Vec<_>>()
+    };
+    let close = |found: Vec<f64>, fall: f64| {
+        let expected = 10.0 * (2.0 * fall).sqrt();
+        assert!(
+            found.len() == 1 && (found[0] / expected - 1.0).abs() < 1e-12,
+            "{found:?}"
+        );
+    };
+    close(under([0.0, -G, 0.0]), G * 0.5);
+    close(under([0.0, -4.0 * G, 0.0]), 4.0 * G * 0.5);
+    close(under([G, 0.0, 0.0]), G * 1.0); // through the whole tank
+    close(under([0.0, G, 0.0]), G * 1.0);
+    close(under([0.0, -0.1 * G, 0.0]), G * 0.5); // never softer than at the start
+
+    // A state with pressures of all sizes.
+    let start = |scene: &Scene| {
+        let mut simulation = scene.build(Isa::detect()).expect("it builds").simulation;
+        simulation.advance_to(0.2).expect("at rest");
+        simulation
+    };
+    let pressures = |simulation: &dyn Simulate| {
+        let snapshot = simulation.snapshot(&[Field::Pressure, Field::Jacobian]);
+        [Field::Pressure, Field::Jacobian].map(|field| snapshot.get(field).expect("asked").to_f64())
+    };
+    let gravity = [0.0, -9.0 * G, 0.0];
+    let mut follows = start(&scene);
+    let [before, j_before] = pressures(&*follows);
+    follows.command(Command::Gravity(gravity));
+    for command in speeds.under(gravity) {
+        follows.command(command);
+    }
+    let [after, j_after] = pressures(&*follows);
+    let largest = before.iter().copied().fold(0.0, f64::max);
+    assert!(largest > 0.8e3 * G * 0.5);
+    for (before, after) in before.iter().zip(&after) {
+        assert!((before - after).abs() < 1e-9 * largest, "{before} {after}");
+    }
+    let squeeze = |j: &[f64]| j.iter().map(|j| 1.0 - j).fold(0.0, f64::max);
+    assert!((squeeze(&j_before) / squeeze(&j_after) / 9.0 - 1.0).abs() < 0.02);
+
+    let mut stays = start(&scene);
+    stays.command(Command::Gravity(gravity));
+    let worst = |simulation: &mut dyn Simulate| {
+        let mut worst = 0.0_f64;
+        for step in 1..=20 {
+            let time = 0.2 + 0.02 * f64::from(step);
+            simulation.advance_to(time).expect("stable");
+            worst = worst.max(squeeze(&pressures(simulation)[1]));
+        }
+        worst
+    };
+    let (followed, stayed) = (worst(&mut *follows), worst(&mut *stays));
+    assert!(followed < 0.02, "{followed}");
+    assert!(stayed > 3.0 * followed, "{stayed} {followed}");
+
+    // A step of fixed length is chosen for the speeds of sound at the start.
+    scene = self::scene("", "", 0.0, &[automatic[0], ("dt", "1e-4")]);
+    assert_eq!(scene.sound_speeds().under(gravity), []);
 }

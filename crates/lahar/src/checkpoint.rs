@@ -354,6 +354,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
 
 fn write_rows<T: Instance<D>, const D: usize>(out: &mut Out, of: &str, rows: Rows<T, D>) {
     let Rows {
+        bulk_modulus,
         columns,
         mass,
         volume0,
@@ -361,6 +362,12 @@ fn write_rows<T: Instance<D>, const D: usize>(out: &mut Out, of: &str, rows: Row
         body,
         runs,
     } = rows;
+    let stiffness: Vec<f64> = bulk_modulus.into_iter().collect();
+    out.put(
+        format!("{of}.bulk_modulus"),
+        &[stiffness.len()],
+        Values::F64(stiffness),
+    );
     for (column, values) in columns.into_iter().enumerate() {
         let (what, component) = column_name(column, D);
         let name = format!("{of}.{what}.{component}");
@@ -433,7 +440,14 @@ fn read_rows<T: Instance<D>, const D: usize>(
     let name = format!("{of}.body");
     let (shape, values) = arrays.take(&name, Values::u32s)?;
     let body = uniform_or_each(&name, &shape, values, count)?;
+    let name = format!("{of}.bulk_modulus");
+    let bulk_modulus = match (group.law.bulk_modulus(), arrays.f64s(&name)?.1.as_slice()) {
+        (None, []) => None,
+        (Some(_), &[stiffness]) if stiffness > 0.0 && stiffness.is_finite() => Some(stiffness),
+        _ => return wrong(&name, "is not that of this material"),
+    };
     Ok(Rows {
+        bulk_modulus,
         columns,
         mass,
         volume0,

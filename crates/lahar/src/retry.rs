@@ -72,9 +72,14 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         let mut mark = self.mark.take()?;
         // What was ordered meanwhile stands.
         let (gravity, pointer) = (self.gravity(), self.pointer);
+        let stiffness: Vec<Option<f64>> =
+            (self.groups.iter().map(|group| group.law.bulk_modulus())).collect();
         self.restore(&mark.state);
         self.command(Command::Gravity(gravity));
         self.command(Command::Pointer(pointer));
+        for (material, bulk_modulus) in stiffness.into_iter().enumerate() {
+            self.stiffen(material, bulk_modulus);
+        }
         mark.attempts += 1;
         let attempts = mark.attempts;
         self.mark = Some(mark);

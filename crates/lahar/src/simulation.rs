@@ -39,6 +39,14 @@ pub enum Command {
     Gravity([f64; 3]),
     /// Sets or lifts the hand that stirs.
     Pointer(Option<Pointer>),
+    /// Makes a fluid stiffer or softer: its speed of sound at rest is `speed` \[m/s\] from now on, and its
+    /// J changes so that pressures stay. Materials without a bulk modulus are left as they are.
+    SoundSpeed {
+        /// Index of the material.
+        material: usize,
+        /// Speed of sound at rest \[m/s\], positive.
+        speed: f64,
+    },
 }
 
 /// A hand in the scene: acts on what is near it, until it is lifted.
@@ -484,7 +492,6 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     /// Speeds of what is there, for the first time step.
     fn measure(&mut self) {
         let mut speed_squared = 0.0_f64;
-        let mut wave_speed_squared = 0.0_f64;
         for group in &self.groups {
             for row in 0..group.len() {
                 let v = Vector::<f64, D>::from_fn(|axis| {
@@ -492,11 +499,8 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                 });
                 speed_squared = speed_squared.max(v.dot(v));
             }
-            let modulus = group
-                .law
-                .wave_modulus(&group.columns[Layout::strain(D)..], group.len());
-            wave_speed_squared = wave_speed_squared.max(modulus / group.density);
         }
+        self.measure_waves();
         self.control.viscosity = self
             .groups
             .iter()
@@ -504,10 +508,35 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             .map(|group| group.law.viscosity() / group.density)
             .fold(0.0, f64::max);
         self.control.speed = speed_squared.sqrt();
-        self.control.wave_speed = wave_speed_squared.sqrt();
         self.control.gravity = Vector(self.setup.gravity).norm();
         self.control.field = self.largest_acceleration();
         self.watch_colliders();
+    }
+
+    /// Gives a material that has a bulk modulus this one \[Pa\], and its particles the pressures that they
+    /// had.
+    pub(crate) fn stiffen(&mut self, material: usize, bulk_modulus: Option<f64>) {
+        let Some(group) = self.groups.get_mut(material) else {
+            return;
+        };
+        if let (Some(before), Some(now)) = (group.law.bulk_modulus(), bulk_modulus)
+            && before != now
+        {
+            group.set_law(group.law.with_bulk_modulus(now));
+            let (_, strain) = group.columns.split_at_mut(Layout::strain(D));
+            group.law.keep_pressure(before, strain);
+            self.measure_waves();
+        }
+    }
+
+    /// The fastest wave in what is there, for the next time step.
+    fn measure_waves(&mut self) {
+        let of = |group: &Group<T, D>| {
+            let strain = &group.columns[Layout::strain(D)..];
+            group.law.wave_modulus(strain, group.len()) / group.density
+        };
+        let squared = self.groups.iter().map(of).fold(0.0, f64::max);
+        self.control.wave_speed = squared.sqrt();
     }
 
     /// The largest acceleration of a particle by forces besides gravity \[m/s²\].
@@ -1126,6 +1155,11 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
                 self.control.gravity = Vector(self.setup.gravity).norm();
             }
             Command::Pointer(pointer) => self.pointer = pointer,
+            Command::SoundSpeed { material, speed } => {
+                let density = self.groups.get(material).map(|group| group.density);
+                let bulk_modulus = density.map(|density| density * speed * speed);
+                self.stiffen(material, bulk_modulus.filter(|&k| k > 0.0 && k.is_finite()));
+            }
         }
     }
 

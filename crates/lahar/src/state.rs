@@ -32,6 +32,8 @@ pub(crate) struct State<T, const D: usize> {
 
 /// The particles of a group.
 pub(crate) struct Rows<T, const D: usize> {
+    /// Of the law, if it can be changed \[Pa\].
+    pub(crate) bulk_modulus: Option<f64>,
     pub(crate) columns: Vec<Vec<T>>,
     pub(crate) mass: PerParticle<T>,
     pub(crate) volume0: PerParticle<T>,
@@ -82,6 +84,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         } = self;
         let mut groups = old.map_or_else(Vec::new, |old| old.groups);
         groups.resize_with(now.len(), || Rows {
+            bulk_modulus: None,
             columns: Vec::new(),
             mass: PerParticle::Uniform(T::default()),
             volume0: PerParticle::Uniform(T::default()),
@@ -90,6 +93,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             runs: Vec::new(),
         });
         for (rows, group) in groups.iter_mut().zip(now) {
+            rows.bulk_modulus = group.law.bulk_modulus();
             rows.columns.clone_from(&group.columns);
             rows.mass.clone_from(&group.mass);
             rows.volume0.clone_from(&group.volume0);
@@ -114,6 +118,11 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     /// Goes back to `state`, which this simulation has had.
     pub(crate) fn restore(&mut self, state: &State<T, D>) {
         for (group, rows) in self.groups.iter_mut().zip(&state.groups) {
+            if let Some(bulk_modulus) = rows.bulk_modulus
+                && group.law.bulk_modulus() != rows.bulk_modulus
+            {
+                group.set_law(group.law.with_bulk_modulus(bulk_modulus));
+            }
             let Group {
                 law: _,
                 density: _,

@@ -89,6 +89,12 @@ impl<const D: usize> Run<D> {
     }
 }
 
+/// Speed of sound at rest, lengths in metres.
+fn sound_speed<T: Lanes, const D: usize>(law: &dyn Law<T, D>, density: f64) -> f64 {
+    let rest = vec![vec![T::default()]; law.strain_columns()];
+    (law.wave_modulus(&rest, 1) / density).sqrt()
+}
+
 /// Where each field's columns begin: position, velocity, affine (column by column), strain.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout;
@@ -123,8 +129,7 @@ pub(crate) struct Group<T: Lanes, const D: usize> {
 
 impl<T: Lanes, const D: usize> Group<T, D> {
     pub(crate) fn new(law: Box<dyn Law<T, D>>, density: f64) -> Self {
-        let rest = vec![vec![T::default()]; law.strain_columns()];
-        let sound_speed = (law.wave_modulus(&rest, 1) / density).sqrt();
+        let sound_speed = sound_speed(&*law, density);
         let columns = Layout::strain(D) + law.strain_columns();
         Self {
             law,
@@ -141,6 +146,12 @@ impl<T: Lanes, const D: usize> Group<T, D> {
 
     pub(crate) fn len(&self) -> usize {
         self.id.len()
+    }
+
+    /// Puts another law of the same strain in place of the present one.
+    pub(crate) fn set_law(&mut self, law: Box<dyn Law<T, D>>) {
+        self.sound_speed = sound_speed(&*law, self.density);
+        self.law = law;
     }
 
     /// Bytes held, spare capacity included.

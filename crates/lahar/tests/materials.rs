@@ -11,7 +11,7 @@ use lahar::material::{
     ConstitutiveModel, Corotated, Dilatation, DisplacementGradient, Dust, Eos, Fluid,
     HardeningFrom, HerschelBulkley, JacobianUpdate, LOGARITHM_ENDS, Model, NeoHookean, PRESETS,
     PlasticGradient, Rheology, SMALLEST_JACOBIAN, Snow, Strain, lame, lame_from_bulk_and_shear,
-    preset,
+    law, preset,
 };
 use lahar::math::{Lanes, Matrix, Scalar, Vector, svd};
 
@@ -1069,4 +1069,46 @@ fn moduli_convert() {
     };
     let modulus = Corotated { lambda, mu }.wave_modulus(strain);
     assert_eq!(modulus, lambda + 2.0 * mu);
+}
+
+/// A law made stiffer or softer keeps the pressure of every particle, and how far torn ones are beyond
+/// the cut-off.
+#[test]
+fn another_bulk_modulus_at_the_same_pressure() {
+    let eos = [
+        Eos::Tait { gamma: 7.0 },
+        Eos::Tait { gamma: 1.0 },
+        Eos::LinearJ,
+    ];
+    for (eos, tension) in eos
+        .into_iter()
+        .flat_map(|eos| [0.0, 300.0, f64::INFINITY].map(|t| (eos, t)))
+    {
+        let before = Fluid {
+            eos,
+            tension,
+            ..Fluid::inviscid(1e5)
+        };
+        let model = |fluid| law::<f64, 2, Fluid>(fluid);
+        for factor in [0.25, 9.0] {
+            let after = <Fluid as ConstitutiveModel<2>>::with_bulk_modulus(before, factor * 1e5);
+            assert_eq!(model(after).bulk_modulus(), Some(factor * 1e5));
+            let start = [-0.02_f64, -1e-3, -1e-7, 0.0, 1e-4, 1e-3, 0.01];
+            let mut strain = vec![start.to_vec()];
+            model(after).keep_pressure(1e5, &mut strain);
+            for (&old, &new) in start.iter().zip(&strain[0]) {
+                let (p, q) = (before.pressure(old), after.pressure(new));
+                assert!((p - q).abs() <= 1e-12 * 1e5, "{before:?} {old}: {p} {q}");
+            }
+            let cut = |fluid: &Fluid| match tension {
+                0.0 => 0.0,
+                pull => fluid.jacobian_minus_one_at(-pull),
+            };
+            if tension.is_finite() && start[6] > cut(&before) {
+                let beyond = |e: f64, fluid: &Fluid| (1.0 + e) / (1.0 + cut(fluid));
+                let (p, q) = (beyond(start[6], &before), beyond(strain[0][6], &after));
+                assert!((p - q).abs() < 1e-14, "{p} {q}");
+            }
+        }
+    }
 }

@@ -274,6 +274,11 @@ fn commands_outlast_a_retry() {
     simulation.begin_frame();
     simulation.substep().unwrap();
     simulation.command(Command::Gravity([0.0, -2.0, 0.0]));
+    simulation.command(Command::SoundSpeed {
+        material: 0,
+        speed: 40.0,
+    });
+    let stiffer_dt = simulation.next_dt().0;
     simulation.command(Command::Pointer(Some(Pointer {
         position: [0.5, 0.5, 0.0],
         radius: 1.0,
@@ -284,6 +289,7 @@ fn commands_outlast_a_retry() {
     let retry = simulation.retry_frame(&failure).unwrap();
     assert_eq!((retry.time, simulation.substeps()), (0.0, 0));
     assert_eq!(simulation.gravity(), [0.0, -2.0, 0.0]);
+    assert_eq!(simulation.next_dt().0, 0.5 * stiffer_dt);
     assert!(simulation.substep().is_err(), "the hand is still there");
     simulation.command(Command::Pointer(None));
     simulation.retry_frame(&failure).unwrap();

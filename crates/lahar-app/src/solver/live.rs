@@ -14,6 +14,8 @@ use std::time::Instant;
 
 use lahar::{Advance, Command, Failure, Field, Retry, Simulate};
 
+use lahar_io::scene::SoundSpeeds;
+
 use super::clock::Throughput;
 use super::{Readouts, Side, mistake};
 
@@ -22,9 +24,11 @@ use super::{Readouts, Side, mistake};
 const SINGLE_SUBSTEPS_LEFT: f64 = 4.0;
 
 /// One of them.
-struct Runner {
+pub(super) struct Runner {
     title: String,
     simulation: Box<dyn Simulate>,
+    /// What follows when gravity is changed.
+    sound_speeds: Option<SoundSpeeds>,
     readouts: Readouts,
     throughput: Throughput,
     frame_substeps: u64,
@@ -37,6 +41,39 @@ struct Runner {
 }
 
 impl Runner {
+    /// A simulation at its start.
+    pub(super) fn new(
+        title: String,
+        simulation: Box<dyn Simulate>,
+        sound_speeds: Option<SoundSpeeds>,
+    ) -> Self {
+        let (dt, limit) = simulation.next_dt();
+        Self {
+            title,
+            readouts: Readouts {
+                dt,
+                limit,
+                ..Readouts::default()
+            },
+            simulation,
+            sound_speeds,
+            throughput: Throughput::default(),
+            frame_substeps: 0,
+            arrived: false,
+            begun: None,
+            retry: None,
+        }
+    }
+
+    fn command(&mut self, command: Command) {
+        self.simulation.command(command);
+        if let (Command::Gravity(gravity), Some(speeds)) = (command, &self.sound_speeds) {
+            for follows in speeds.under(gravity) {
+                self.simulation.command(follows);
+            }
+        }
+    }
+
     /// At the start of a frame, a copy to begin it again from.
     fn begin(&mut self, frame: u64) {
         if self.begun != Some(frame) {
@@ -93,27 +130,9 @@ pub(super) struct Live {
 }
 
 impl Live {
-    /// Simulations at their start, each with its title.
-    pub(super) fn new(simulations: Vec<(String, Box<dyn Simulate>)>, frame_rate: f64) -> Self {
-        let runner = |(title, simulation): (String, Box<dyn Simulate>)| {
-            let (dt, limit) = simulation.next_dt();
-            Runner {
-                title,
-                readouts: Readouts {
-                    dt,
-                    limit,
-                    ..Readouts::default()
-                },
-                simulation,
-                throughput: Throughput::default(),
-                frame_substeps: 0,
-                arrived: false,
-                begun: None,
-                retry: None,
-            }
-        };
+    pub(super) fn new(runners: Vec<Runner>, frame_rate: f64) -> Self {
         Self {
-            runners: simulations.into_iter().map(runner).collect(),
+            runners,
             frame_rate,
             frame: 0,
         }
@@ -187,7 +206,7 @@ impl Live {
 
     pub(super) fn command(&mut self, command: Command) {
         for runner in &mut self.runners {
-            runner.simulation.command(command);
+            runner.command(command);
         }
     }
 
@@ -247,10 +266,7 @@ mod tests {
     #[test]
     fn a_frame_is_tried_again_as_without_a_window() {
         let (frame_rate, frames) = (1.0, 3);
-        let sides = ["a", "b"].map(|title| {
-            let simulation: Box<dyn Simulate> = Box::new(stiff());
-            (title.to_owned(), simulation)
-        });
+        let sides = ["a", "b"].map(|title| Runner::new(title.to_owned(), Box::new(stiff()), None));
         let mut live = Live::new(sides.into(), frame_rate);
         let mut done = 0;
         while done < frames {
@@ -279,7 +295,10 @@ mod tests {
     /// What cannot be helped is said, and the side that failed is named.
     #[test]
     fn a_failure_that_stays_ends_the_scene() {
-        let mut live = Live::new(vec![("a".to_owned(), Box::new(stiff()))], 1.0);
+        let mut live = Live::new(
+            vec![Runner::new("a".to_owned(), Box::new(stiff()), None)],
+            1.0,
+        );
         live.command(Command::Gravity([f64::NAN; 3]));
         let mut end = live.work();
         while end.is_ok() {

@@ -9,7 +9,7 @@ use lahar::Field;
 use triple_buffer::Input;
 
 use super::clock::{Clock, Rate};
-use super::live::Live;
+use super::live::{Live, Runner};
 use super::replay::Replay;
 use super::{ALWAYS, Condition, News, Order, Shown, Wanted, mistake};
 use crate::scenes::{Footage, SceneSource, Stage};
@@ -168,9 +168,12 @@ impl Worker {
         let mut facts = None;
         let mut replay = None;
         for (title, stage) in stages {
+            let sound_speeds = stage.facts.sound_speeds.clone();
             facts.get_or_insert(stage.facts);
             match stage.footage {
-                Footage::Simulation(simulation) => simulations.push((title, simulation)),
+                Footage::Simulation(simulation) => {
+                    simulations.push(Runner::new(title, simulation, sound_speeds))
+                }
                 Footage::Recording(recording) => replay = Some(Replay::new(*recording)?),
             }
         }

@@ -58,6 +58,7 @@ impl SceneSource for Blocks {
             domain: simulation.domain(),
             colliders: vec![],
             gravity: simulation.gravity(),
+            sound_speeds: None,
             frame_rate: 60.0,
             frames: None,
             swatches: vec![Swatch {

@@ -739,7 +739,7 @@ pub(crate) static FLUID: Section = Section {
                 Kind::OneOf(&[Kind::Number(Bound::Positive), Kind::Word(&["auto"])]),
                 "m/s",
                 Words("\"auto\", unless `bulk_modulus` is given"),
-                "Speed of sound c; `\"auto\"`: ten times the largest speed expected, √(v² + 2gH) with the largest speed v of bodies and colliders and their highest point's height H above the floor.",
+                "Speed of sound c; `\"auto\"`: ten times the largest speed expected, √(v² + 2gH) with the largest speed v of bodies and colliders and their highest point's height H above the floor; with an automatic time step it follows when gravity is changed in the window.",
             ),
             key(
                 "bulk_modulus",

@@ -34,6 +34,7 @@ mod probes;
 mod read;
 mod reference;
 mod shapes;
+mod stiffness;
 #[cfg(test)]
 mod tests;
 
@@ -43,6 +44,8 @@ pub use controls::Controls;
 pub(crate) use document::shorten;
 pub(crate) use files::not_text;
 pub use reference::{docs, docs_of, schema};
+
+pub use stiffness::SoundSpeeds;
 
 use crate::builtin;
 use crate::error::SceneError;
@@ -383,6 +386,14 @@ impl Scene {
         match &self.plan {
             AnyPlan::D2(plan) => &plan.materials[index],
             AnyPlan::D3(plan) => &plan.materials[index],
+        }
+    }
+
+    /// How fast sound should be when gravity is changed while it runs.
+    pub fn sound_speeds(&self) -> SoundSpeeds {
+        match &self.plan {
+            AnyPlan::D2(plan) => plan.sound_speeds(),
+            AnyPlan::D3(plan) => plan.sound_speeds(),
         }
     }
 

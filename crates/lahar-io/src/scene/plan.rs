@@ -1,11 +1,12 @@
 //! From a checked document to a plan in numbers of one dimension: domain, materials, bodies.
 
 use super::colliders::read_colliders;
-use super::forces::{expect, lattice, read_forces};
+use super::forces::{lattice, read_forces};
 use super::formula::{Formulas, Of};
 use super::keys::MODULI;
 use super::read::Reader;
 use super::shapes::read_shape_source;
+use super::stiffness::{Falls, Stiffness};
 use super::{Files, Limits};
 use crate::error::{SceneError, nearest};
 use crate::particle_list::ParticleList;
@@ -39,6 +40,8 @@ pub(crate) struct Plan<const D: usize> {
     pub(crate) force: ForceForm,
     pub(crate) time_step: TimeStep,
     pub(crate) materials: Vec<Material>,
+    /// Fluids whose speed of sound the scene leaves open.
+    pub(crate) automatic: Vec<usize>,
     pub(crate) bodies: Vec<Body<D>>,
     /// What is measured on the way.
     pub(crate) probes: Vec<Probe<D>>,
@@ -139,7 +142,7 @@ impl<const D: usize> Body<D> {
     }
 
     /// The largest speed at the start \[m/s\], or a bound on it.
-    fn speed(&self) -> f64 {
+    pub(super) fn speed(&self) -> f64 {
         let length = |v: &[f64; D]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
         let bounds = self.bounds();
         let half: [f64; D] = core::array::from_fn(|i| 0.5 * bounds.side(i));
@@ -160,18 +163,6 @@ impl<const D: usize> Body<D> {
         own + listed + length(&turning)
     }
 }
-
-/// How a fluid's stiffness is given.
-#[derive(Clone, Copy)]
-enum Stiffness {
-    Auto,
-    SoundSpeed(f64),
-    Bulk(f64),
-}
-
-/// Sound travels so many times faster than the fastest water that is expected: density then varies
-/// by about 1 % (Monaghan 1994).
-const SOUND_OVER_SPEED: f64 = 10.0;
 
 impl<const D: usize> Plan<D> {
     pub(crate) fn read(
@@ -251,6 +242,7 @@ impl<const D: usize> Plan<D> {
             force,
             time_step,
             materials,
+            automatic: Vec::new(),
             bodies,
             probes: Vec::new(),
             warnings,
@@ -258,70 +250,6 @@ impl<const D: usize> Plan<D> {
         plan.settle_stiffness(&stiffness)?;
         plan.warn();
         Ok(plan)
-    }
-
-    /// Largest speed that the bodies may reach \[m/s\]: √(v² + 2 g H), with g the mean of gravity
-    /// and forces; what they swing by counts over half of the longest side.
-    fn expected_speed(&self) -> f64 {
-        let bounds: Vec<Bounds<D>> = self.bodies.iter().map(Body::bounds).collect();
-        let forces = expect(&self.forces, &bounds, self.duration);
-        let pull: [f64; D] = core::array::from_fn(|i| self.gravity[i] + forces.mean[i]);
-        let g = pull.iter().map(|g| g * g).sum::<f64>().sqrt();
-        let longest = |bounds: &Bounds<D>| (0..D).map(|i| bounds.side(i)).fold(0.0, f64::max);
-        let room = match &self.domain {
-            Some(domain) => longest(&Bounds {
-                min: domain.min,
-                max: domain.max,
-            }),
-            None => longest(&Bounds::around(&bounds)),
-        };
-        let thrown = self.bodies.iter().map(Body::speed).fold(0.0, f64::max);
-        let everywhere = Bounds::around(&bounds);
-        let around = match &self.domain {
-            Some(domain) => (domain.min, domain.max),
-            None => (everywhere.min, everywhere.max),
-        };
-        let pushed = self
-            .colliders
-            .iter()
-            .map(|collider| collider.largest_speed(0.0, self.duration, around))
-            .fold(thrown, f64::max);
-        let squared = pushed * pushed + forces.swing * room;
-        if g == 0.0 {
-            return squared.sqrt();
-        }
-        // Lowest and highest height of a box against gravity.
-        let heights = |bounds: &Bounds<D>| {
-            let mut range = [0.0, 0.0];
-            for i in 0..D {
-                let up = -pull[i] / g;
-                if up != 0.0 {
-                    let (a, b) = (bounds.min[i] * up, bounds.max[i] * up);
-                    range = [range[0] + a.min(b), range[1] + a.max(b)];
-                }
-            }
-            range
-        };
-        let of_bodies: Vec<[f64; 2]> = self
-            .bodies
-            .iter()
-            .map(|body| heights(&body.bounds()))
-            .collect();
-        let top = of_bodies
-            .iter()
-            .map(|range| range[1])
-            .fold(f64::NEG_INFINITY, f64::max);
-        let floor = match &self.domain {
-            Some(domain) => heights(&Bounds {
-                min: domain.min,
-                max: domain.max,
-            })[0],
-            None => of_bodies
-                .iter()
-                .map(|range| range[0])
-                .fold(f64::INFINITY, f64::min),
-        };
-        (squared + 2.0 * g * (top - floor).max(0.0)).sqrt()
     }
 
     /// Whether a body of fluid starts with the pressure of its own weight.
@@ -359,33 +287,9 @@ impl<const D: usize> Plan<D> {
             || (g[axis] > 0.0 && high != Contact::Open && near(bounds.max[axis] - domain.max[axis]))
     }
 
-    /// Gives every fluid its bulk modulus.
-    fn settle_stiffness(&mut self, given: &[(Stiffness, Reader<'_>)]) -> Result<(), SceneError> {
-        let speed = self.expected_speed();
-        for (material, (stiffness, table)) in self.materials.iter_mut().zip(given) {
-            let Model::Fluid(fluid) = &mut material.model else {
-                continue;
-            };
-            fluid.bulk_modulus = match stiffness {
-                Stiffness::Bulk(bulk) => *bulk,
-                Stiffness::SoundSpeed(c) => material.density * c * c,
-                Stiffness::Auto if speed > 0.0 => {
-                    material.density * (SOUND_OVER_SPEED * speed).powi(2)
-                }
-                Stiffness::Auto => {
-                    let error = table.error_at("sound_speed", format!("the speed of sound of \"{}\" cannot be found: nothing moves or can fall", material.name));
-                    return Err(error.hint(
-                        "give sound_speed a number, about ten times the largest speed you expect",
-                    ));
-                }
-            };
-        }
-        Ok(())
-    }
-
     fn warn(&mut self) {
         let mut warnings = core::mem::take(&mut self.warnings);
-        let speed = self.expected_speed();
+        let speed = Falls::of(self).speed(self.gravity);
         for (index, material) in self.materials.iter().enumerate() {
             if !self.bodies.iter().any(|body| body.material == index) {
                 warnings.push(format!(

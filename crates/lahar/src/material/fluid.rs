@@ -270,6 +270,29 @@ impl<const D: usize> ConstitutiveModel<D> for Fluid {
         self.volume
     }
 
+    fn bulk_modulus(&self) -> Option<f64> {
+        Some(self.bulk_modulus)
+    }
+
+    fn with_bulk_modulus(self, bulk_modulus: f64) -> Self {
+        Self {
+            bulk_modulus,
+            ..self
+        }
+    }
+
+    /// Beyond the cut-off, where pressure says nothing of J, it stays as far beyond.
+    fn at_same_pressure(&self, strain: Dilatation<f64>, before: &Self) -> Dilatation<f64> {
+        let e = floored(strain.jacobian_minus_one);
+        let (cut_off, now) = (before.cut_off(), self.cut_off());
+        let jacobian_minus_one = if e < cut_off {
+            self.jacobian_minus_one_at(before.pressure(e))
+        } else {
+            e + (1.0 + e) / (1.0 + cut_off) * (now - cut_off)
+        };
+        Dilatation { jacobian_minus_one }
+    }
+
     /// What damps a longitudinal wave, κ + 2μ(1 − 1/d), or a shear wave, μ: the larger.
     fn viscosity(&self) -> f64 {
         let mu = self.viscosity

@@ -74,6 +74,12 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
     fn wave_modulus(&self, strain: &[Vec<T>], count: usize) -> f64;
     /// Viscosity for the time step \[Pa s\].
     fn viscosity(&self) -> f64;
+    /// Bulk modulus at rest \[Pa\], of a law that can be made stiffer while it runs.
+    fn bulk_modulus(&self) -> Option<f64>;
+    /// The law with another bulk modulus \[Pa\].
+    fn with_bulk_modulus(&self, bulk_modulus: f64) -> Box<dyn Law<T, D>>;
+    /// Gives every particle of `strain` the pressure that it had when the bulk modulus was `before` \[Pa\].
+    fn keep_pressure(&self, before: f64, strain: &mut [Vec<T>]);
     /// Strain columns for a particle that starts with the deformation gradient `f` and J_P.
     fn start(&self, f: [[f64; D]; D], plastic_jacobian: f64) -> Vec<f64>;
     /// What the columns mean.
@@ -166,7 +172,7 @@ pub(crate) fn store_part<S: Simd, T: Lanes>(value: T::Of<S>, slice: &mut [T], co
     }
 }
 
-impl<T: Lanes, const D: usize, M: ConstitutiveModel<D>> Law<T, D> for Compiled<M> {
+impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for Compiled<M> {
     fn strain_columns(&self) -> usize {
         <M::Strain<f64> as Strain<f64, D>>::COLUMNS
     }
@@ -230,6 +236,24 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D>> Law<T, D> for Compiled<M
 
     fn viscosity(&self) -> f64 {
         self.0.viscosity()
+    }
+
+    fn bulk_modulus(&self) -> Option<f64> {
+        self.0.bulk_modulus()
+    }
+
+    fn with_bulk_modulus(&self, bulk_modulus: f64) -> Box<dyn Law<T, D>> {
+        law(self.0.with_bulk_modulus(bulk_modulus))
+    }
+
+    fn keep_pressure(&self, before: f64, strain: &mut [Vec<T>]) {
+        let before = self.0.with_bulk_modulus(before);
+        for p in 0..strain.first().map_or(0, Vec::len) {
+            let old = M::Strain::<f64>::read(|column| strain[column][p].to_f64());
+            self.0
+                .at_same_pressure(old, &before)
+                .write(|column, value| strain[column][p] = T::from_f64(value));
+        }
     }
 
     fn start(&self, f: [[f64; D]; D], plastic_jacobian: f64) -> Vec<f64> {

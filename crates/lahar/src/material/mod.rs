@@ -60,6 +60,21 @@ pub trait ConstitutiveModel<const D: usize>: Copy + Send + Sync {
         VolumeRule::Jacobian
     }
 
+    /// Bulk modulus at rest \[Pa\], of a law that can be made stiffer while it runs.
+    fn bulk_modulus(&self) -> Option<f64> {
+        None
+    }
+
+    /// The same law with another bulk modulus \[Pa\].
+    fn with_bulk_modulus(self, _: f64) -> Self {
+        self
+    }
+
+    /// The strain at which this law has the pressure that `before` has at `strain`.
+    fn at_same_pressure(&self, strain: Self::Strain<f64>, _before: &Self) -> Self::Strain<f64> {
+        strain
+    }
+
     /// Dynamic viscosity \[Pa s\], the largest of the law's (of shear or of longitudinal waves),
     /// for the time step.
     fn viscosity(&self) -> f64 {
