@@ -183,12 +183,18 @@ fn a_shortened_step_goes_on() {
     }
 }
 
-/// Gravity as it was turned and the hand as it lies are kept.
+/// Gravity as it was turned, fluids as they were stiffened and the hand as it lies are kept.
 #[test]
 fn what_was_ordered_goes_on() {
     let scene = brawl::<2>(32);
     let mut one = fresh::<f32, 2>(&scene);
     one.command(Command::Gravity([3.0, 0.5, 0.0]));
+    let usual_dt = one.next_dt().0;
+    for material in 0..one.materials().len() {
+        let speed = 2e3;
+        one.command(Command::SoundSpeed { material, speed });
+    }
+    assert!(one.next_dt().0 < 0.5 * usual_dt, "there is a fluid");
     for action in [
         PointerAction::Attract(20.0),
         PointerAction::Drag([1.0, 2.0, 0.0]),
