@@ -25,6 +25,7 @@ impl Args {
             Some(Command::List(list)) => list.json,
             Some(Command::Show(show)) => show.json,
             Some(Command::Validate(validate)) => validate.json,
+            Some(Command::Bench(bench)) => bench.json,
             _ => false,
         }
     }
@@ -47,6 +48,8 @@ pub(crate) enum Command {
     Plot(Plot),
     /// Run physics cases and compare with exact solutions, experiments and other programs
     Validate(Validate),
+    /// Measure how fast scenes are computed
+    Bench(Bench),
     /// Print the JSON schema of scene files, for editors
     Schema,
     /// Print completions for a shell
@@ -220,6 +223,48 @@ pub(crate) struct Validate {
     pub(crate) threads: Option<u16>,
 
     /// Print the findings as one JSON document on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `bench`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Bench {
+    /// What to measure: dam-3d, dam-2d, jelly-3d, snow-3d, dam-3d-f64, dam-3d-portable; all if not given, dam-3d with
+    /// --growth
+    #[arg(long = "case", value_name = "CASES", value_delimiter = ',')]
+    pub(crate) cases: Vec<String>,
+
+    /// About so many particles in place of the scenes' million
+    #[arg(long, value_name = "N", value_parser = positive, conflicts_with = "growth")]
+    pub(crate) particles: Option<f64>,
+
+    /// Threads to compute with, one after the other, as in `--threads 1,2`; all of this machine if not given
+    #[arg(long, value_name = "N", value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Vec<u16>,
+
+    /// The instruction set to compute with; the widest of this machine if not given
+    #[arg(long, value_name = "SET", value_parser = isa)]
+    pub(crate) isa: Option<Isa>,
+
+    /// Timed runs of each
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub(crate) runs: u16,
+
+    /// Show the ratios to what an earlier `bench --json` has printed
+    #[arg(long, value_name = "FILE")]
+    pub(crate) compare: Option<PathBuf>,
+
+    /// How speed and memory grow: measure with each of these numbers of particles, and draw plots
+    #[arg(long, value_name = "N,M", value_delimiter = ',', value_parser = positive, num_args = 0..=1,
+          default_missing_value = "1e5,3e5,1e6,3e6,1e7", require_equals = true)]
+    pub(crate) growth: Option<Vec<f64>>,
+
+    /// The folder for the plots of --growth; out/bench if not given
+    #[arg(short, long, value_name = "DIR", requires = "growth")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Print the measurements as one JSON document on standard output
     #[arg(long)]
     pub(crate) json: bool,
 }

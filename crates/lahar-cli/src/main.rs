@@ -6,6 +6,7 @@
 //! Only this crate prints: reports on standard output, everything else on standard error.
 
 mod args;
+mod bench;
 mod clock;
 mod compare;
 mod completions;
@@ -31,6 +32,7 @@ use args::{Args, Command};
 use error::CliError;
 
 fn main() -> ExitCode {
+    clock::start();
     let args = match Args::try_parse() {
         Ok(args) => args,
         // Help and the version come this way too, with exit code 0.
@@ -64,6 +66,7 @@ fn execute(args: Args) -> Result<ExitCode, CliError> {
         Some(Command::Show(show)) => show::show(&show),
         Some(Command::New(args)) => new::new(&args.file),
         Some(Command::Plot(plot)) => plot::plot(&plot),
+        Some(Command::Bench(args)) => bench::bench(&args),
         Some(Command::Validate(args)) => validate::validate(&args),
         Some(Command::Schema) => schema::schema(),
         Some(Command::Completions(completions)) => completions::completions(completions.shell),

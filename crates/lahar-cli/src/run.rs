@@ -27,7 +27,6 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
             CliError::Machine(format!("cannot start {} threads: {error}", plan.threads))
         })?;
     interrupt::watch()?;
-    let started = clock::seconds();
     let built = pool.install(|| plan.scene.build(plan.isa))?;
     for warning in &built.warnings {
         terminal::note(&format!("warning: {warning}"));
@@ -62,17 +61,16 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
                 simulation: &mut *simulation,
                 writer,
                 fields: plan.fields(),
-                started,
+                startup_seconds: 0.0,
                 output_seconds: 0.0,
                 particle_steps: 0,
                 retries: Vec::new(),
             };
             let end = going.frames();
             record.retries = core::mem::take(&mut going.retries);
-            (record.particle_steps, record.phase_seconds) = (
-                going.particle_steps,
-                PhaseSeconds::new(going.simulation.phase_times(), going.output_seconds),
-            );
+            record.particle_steps = going.particle_steps;
+            record.startup_seconds = going.startup_seconds;
+            record.phase_seconds = going.phase_seconds();
             // The film is made even if the run failed: it shows how.
             let waited = clock::seconds();
             let written = going.writer.finish();
@@ -85,7 +83,7 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
         })
     });
 
-    finish_record(&mut record, &mut *simulation, started, &outcome);
+    finish_record(&mut record, &*simulation, &outcome);
     let recorded = record.write(&folder.record());
     match outcome {
         Err(Stop::Failure { failure, frame }) => Err(CliError::Simulation {
@@ -148,7 +146,8 @@ struct Going<'a> {
     simulation: &'a mut dyn Simulate,
     writer: Writer,
     fields: Vec<Field>,
-    started: f64,
+    /// Seconds before the first substep, without output.
+    startup_seconds: f64,
     output_seconds: f64,
     particle_steps: u64,
     retries: Vec<String>,
@@ -164,6 +163,7 @@ impl Going<'_> {
 
     fn frames_with(&mut self, progress: &mut Progress) -> Result<End, Stop> {
         self.write(0).map_err(Stop::Output)?;
+        self.startup_seconds = clock::seconds() - self.output_seconds;
         for frame in 1..=self.plan.frames {
             if interrupt::asked_to_stop() {
                 return Ok(End::Interrupted);
@@ -171,7 +171,7 @@ impl Going<'_> {
             if self
                 .plan
                 .deadline
-                .is_some_and(|deadline| clock::seconds() - self.started > deadline)
+                .is_some_and(|deadline| clock::seconds() > deadline)
             {
                 return Ok(End::Deadline);
             }
@@ -184,16 +184,28 @@ impl Going<'_> {
                 })?;
             self.particle_steps += particles * advance.substeps;
             self.write(frame).map_err(Stop::Output)?;
-            let seconds = clock::seconds() - self.started;
             progress.update(&Standing {
                 frame,
                 time: self.simulation.time(),
-                rate: self.particle_steps as f64 / (seconds - self.output_seconds).max(1e-9),
-                seconds,
+                rate: self.particle_steps as f64 / self.solving_seconds().max(1e-9),
+                seconds: clock::seconds(),
                 advance,
             });
         }
         Ok(End::Done)
+    }
+
+    /// Seconds since the first substep, without output.
+    fn solving_seconds(&self) -> f64 {
+        clock::seconds() - self.startup_seconds - self.output_seconds
+    }
+
+    fn phase_seconds(&self) -> PhaseSeconds {
+        PhaseSeconds::new(
+            self.simulation.phase_times(),
+            self.solving_seconds(),
+            self.output_seconds,
+        )
     }
 
     /// A frame, with shorter time steps if it fails.
@@ -217,14 +229,16 @@ impl Going<'_> {
 
     /// Hands a frame to the writing thread.
     fn write(&mut self, frame: u64) -> Result<(), OutputError> {
-        let before = clock::seconds();
+        let (before, sorted) = (clock::seconds(), self.simulation.phase_times().sort);
         let due = frame.is_multiple_of(self.plan.scene.output.every.max(1));
         let snapshot =
             (due && !self.fields.is_empty()).then(|| self.simulation.snapshot(&self.fields));
         let diagnostics = self.simulation.diagnostics();
         let probes = self.simulation.take_probe_samples();
         let result = self.writer.frame(frame, snapshot, diagnostics, probes);
-        self.output_seconds += clock::seconds() - before;
+        // Diagnostics sort if the next substep would have: that is no output.
+        let sorting = self.simulation.phase_times().sort - sorted;
+        self.output_seconds += clock::seconds() - before - sorting;
         result
     }
 }
@@ -247,6 +261,7 @@ fn first_record(plan: &Plan, simulation: &dyn Simulate, warnings: Vec<String>) -
         particles: simulation.particle_count() as u64,
         particle_steps: 0,
         particle_steps_per_second: 0.0,
+        startup_seconds: 0.0,
         seconds: 0.0,
         phase_seconds: PhaseSeconds::default(),
         sorts: 0,
@@ -257,8 +272,7 @@ fn first_record(plan: &Plan, simulation: &dyn Simulate, warnings: Vec<String>) -
 
 fn finish_record(
     record: &mut Record,
-    simulation: &mut dyn Simulate,
-    started: f64,
+    simulation: &dyn Simulate,
     outcome: &Result<(End, Written), Stop>,
 ) {
     record.status = match outcome {
@@ -278,9 +292,9 @@ fn finish_record(
     record.substeps = simulation.substeps();
     record.particles = simulation.particle_count() as u64;
     record.sorts = simulation.phase_times().sorts;
-    record.seconds = clock::seconds() - started;
+    record.seconds = clock::seconds();
     record.particle_steps_per_second =
-        record.particle_steps as f64 / (record.seconds - record.phase_seconds.output).max(1e-9);
+        record.particle_steps as f64 / record.phase_seconds.solving().max(1e-9);
 }
 
 fn announcement(plan: &Plan, record: &Record, folder: &RunFolder) -> Option<String> {

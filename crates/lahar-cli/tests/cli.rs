@@ -610,3 +610,119 @@ fn a_run_that_cannot_be_helped_keeps_the_frames_before() {
             .exists()
     );
 }
+
+#[test]
+fn phases_and_start_up_make_up_the_time() {
+    let here = here();
+    let output = run(
+        here.path(),
+        &["--frames=4", "--format=npz", "-o", "r", "--json"],
+    );
+    code(&output, 0);
+    let record = json(&output);
+    let number = |key: &str| record[key].as_f64().unwrap();
+    let phases = record["phase_seconds"].as_object().unwrap();
+    let all: f64 = phases
+        .values()
+        .map(|seconds| seconds.as_f64().unwrap())
+        .sum();
+    let whole = number("seconds");
+    assert!(number("startup_seconds") > 0.0);
+    assert!(
+        (number("startup_seconds") + all - whole).abs() < 0.02 * whole + 0.01,
+        "{record}"
+    );
+    // The rate is over all phases but output.
+    let solving = all - phases["output"].as_f64().unwrap();
+    let rate = number("particle_steps") / solving;
+    assert!((number("particle_steps_per_second") / rate - 1.0).abs() < 1e-9);
+    assert!(phases["volume"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn bench_measures_compares_and_draws() {
+    let here = here();
+    let small = [
+        "bench",
+        "--case=dam-2d,jelly-3d",
+        "--particles=3000",
+        "--threads=1,2",
+        "--runs=2",
+    ];
+    let words: Vec<&str> = small.iter().chain(&["--json"]).copied().collect();
+    let output = lahar(here.path(), &words);
+    code(&output, 0);
+    let report = json(&output);
+    let results = report["results"].as_array().unwrap();
+    let cases: Vec<&str> = results
+        .iter()
+        .map(|m| m["case"].as_str().unwrap())
+        .collect();
+    assert_eq!(cases, ["dam-2d", "dam-2d", "jelly-3d", "jelly-3d"]);
+    for measured in results {
+        let number = |key: &str| measured[key].as_f64().unwrap();
+        assert!(
+            0.0 < number("min") && number("min") <= number("median"),
+            "{measured}"
+        );
+        assert!(
+            number("median") <= number("max") && number("sorts") >= 2.0,
+            "{measured}"
+        );
+        assert!(
+            (number("particles") / 3000.0 - 1.0).abs() < 0.1,
+            "{measured}"
+        );
+    }
+    std::fs::write(here.path().join("before.json"), &output.stdout).unwrap();
+    let words: Vec<&str> = small
+        .iter()
+        .chain(&["--compare=before.json"])
+        .copied()
+        .collect();
+    let output = lahar(here.path(), &words);
+    code(&output, 0);
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains("to baseline"), "{text}");
+    assert_eq!(
+        text.lines().filter(|line| line.contains("dam-2d")).count(),
+        2,
+        "{text}"
+    );
+
+    let words = [
+        "bench",
+        "--case=dam-2d",
+        "--growth=1000,4000",
+        "--threads=1,2",
+        "--runs=1",
+        "-o",
+        "plots",
+    ];
+    code(&lahar(here.path(), &words), 0);
+    assert!(
+        names(&here.path().join("plots"))
+            .iter()
+            .any(|name| name == "threads.svg")
+    );
+}
+
+#[test]
+fn bench_says_what_is_wrong() {
+    let here = here();
+    let output = lahar(here.path(), &["bench", "--case=dam"]);
+    code(&output, 2);
+    assert!(
+        errors(&output).contains("no case \"dam\"; there are dam-3d,"),
+        "{}",
+        errors(&output)
+    );
+    std::fs::write(here.path().join("no.json"), "{}").unwrap();
+    let output = lahar(here.path(), &["bench", "--compare=no.json"]);
+    code(&output, 2);
+    assert!(
+        errors(&output).contains("no.json: it is not what"),
+        "{}",
+        errors(&output)
+    );
+}

@@ -104,6 +104,14 @@ const VALIDATION: &[Builtin] = scenes! {
     "d3-wall-impact" in "validation" 2 "Dam break that runs into a wall" "A dam break hits the end wall, where gauges are.";
 };
 
+/// Scenes to measure speed by; not listed, but found by name.
+const BENCH: &[Builtin] = scenes! {
+    "bench-dam-3d" in "bench" 3 "Benchmark: dam break in 3D" "A million particles of water, 8 a cell, collapse.";
+    "bench-dam-2d" in "bench" 2 "Benchmark: dam break in 2D" "A million particles of water, 4 a cell, collapse.";
+    "bench-jelly-3d" in "bench" 3 "Benchmark: jelly in 3D" "A million particles of jelly slide into a wall.";
+    "bench-snow-3d" in "bench" 3 "Benchmark: snow in 3D" "A million particles of snow break in a corner.";
+};
+
 /// A commented scene to start an own one from.
 pub fn starter() -> &'static str {
     include_str!("../scenes/starter.toml")
@@ -119,10 +127,16 @@ pub fn validation() -> &'static [Builtin] {
     VALIDATION
 }
 
+/// The scenes to measure speed by.
+pub fn bench() -> &'static [Builtin] {
+    BENCH
+}
+
 /// The built-in scene called `name`.
 pub fn find(name: &str) -> Option<&'static Builtin> {
     SCENES
         .iter()
         .chain(VALIDATION)
+        .chain(BENCH)
         .find(|scene| scene.name == name)
 }

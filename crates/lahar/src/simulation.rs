@@ -97,6 +97,8 @@ pub struct Advance {
 pub struct PhaseTimes {
     /// Moving particles to their blocks.
     pub sort: f64,
+    /// Setting volumes right by how full the grid is.
+    pub volume: f64,
     /// Particles to grid.
     pub scatter: f64,
     /// Grid update.
@@ -613,7 +615,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     /// One substep of length `dt` \[s\].
     fn substep_of(&mut self, dt: f64, limit: DtLimit) -> Result<(), Failure> {
         self.sort_if_drifted();
-        self.correct_volumes(dt);
+        self.set_volumes_right(dt);
         self.push_particles(dt);
         let colliders = self.moving(dt);
         self.scatter(dt); // (1)–(4)
@@ -672,7 +674,6 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     /// P2G.
     fn scatter(&mut self, dt: f64) {
         let start = self.now();
-        self.gather_volumes();
         self.scatter_what(What::Momentum, dt);
         self.times.scatter += self.now() - start;
     }
@@ -688,6 +689,14 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     pub(crate) fn rest_volume_to_grid(&mut self) {
         self.scatter_what(What::Volume { corrected: false }, 0.0);
         T::sum_tiles(&mut self.grid, self.isa);
+    }
+
+    /// Volumes by how full the grid is, for the materials that want it.
+    fn set_volumes_right(&mut self, dt: f64) {
+        let start = self.now();
+        self.correct_volumes(dt);
+        self.gather_volumes();
+        self.times.volume += self.now() - start;
     }
 
     /// (7g) for the materials that want it.

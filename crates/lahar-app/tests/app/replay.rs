@@ -40,6 +40,7 @@ fn record(folder: &std::path::Path, frames: u64) {
         particles: 2,
         particle_steps: 20,
         particle_steps_per_second: 1.0,
+        startup_seconds: 0.5,
         seconds: 1.0,
         phase_seconds: PhaseSeconds::default(),
         sorts: 1,

@@ -27,26 +27,48 @@ pub enum Status {
 pub struct PhaseSeconds {
     /// Moving particles to their blocks.
     pub sort: f64,
+    /// Setting volumes right by how full the grid is.
+    #[serde(default)]
+    pub volume: f64,
     /// Particles to grid.
     pub scatter: f64,
     /// Grid update.
     pub grid: f64,
     /// Grid to particles.
     pub gather: f64,
+    /// What else a frame takes: time steps, boundaries' accounts, probes, the copy that a frame that fails
+    /// begins again from.
+    #[serde(default)]
+    pub other: f64,
     /// What the solver spent on output: copying, and waiting for the writing thread.
     pub output: f64,
 }
 
 impl PhaseSeconds {
-    /// The solver's phases, and the seconds of output.
-    pub fn new(phases: PhaseTimes, output: f64) -> Self {
+    /// `seconds` of solving, divided by the solver's phases, and the seconds of output.
+    pub fn new(phases: PhaseTimes, seconds: f64, output: f64) -> Self {
+        let PhaseTimes {
+            sort,
+            volume,
+            scatter,
+            grid,
+            gather,
+            sorts: _,
+        } = phases;
         Self {
-            sort: phases.sort,
-            scatter: phases.scatter,
-            grid: phases.grid,
-            gather: phases.gather,
+            sort,
+            volume,
+            scatter,
+            grid,
+            gather,
+            other: (seconds - (sort + volume + scatter + grid + gather)).max(0.0),
             output,
         }
+    }
+
+    /// Seconds of everything but output.
+    pub fn solving(&self) -> f64 {
+        self.sort + self.volume + self.scatter + self.grid + self.gather + self.other
     }
 }
 
@@ -83,9 +105,12 @@ pub struct Record {
     pub particles: u64,
     /// Σ over substeps of particles.
     pub particle_steps: u64,
-    /// `particle_steps` over the seconds of everything but output.
+    /// `particle_steps` over the seconds from the first substep to the end, of everything but output.
     pub particle_steps_per_second: f64,
-    /// Seconds from start to end.
+    /// Seconds from the program's start to its first substep, the output of frame 0 not counted.
+    #[serde(default)]
+    pub startup_seconds: f64,
+    /// Seconds from the program's start to the end: start-up and all phases.
     pub seconds: f64,
     /// Seconds by phase.
     pub phase_seconds: PhaseSeconds,

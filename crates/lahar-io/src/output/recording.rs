@@ -192,6 +192,7 @@ mod tests {
             particles: 2,
             particle_steps: 2,
             particle_steps_per_second: 1.0,
+            startup_seconds: 0.5,
             seconds: 1.0,
             phase_seconds: PhaseSeconds::default(),
             sorts: 1,

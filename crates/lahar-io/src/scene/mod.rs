@@ -407,6 +407,14 @@ impl Scene {
         self.bodies.iter().map(|body| body.expected_particles).sum()
     }
 
+    /// Distance between nodes \[m\].
+    pub fn dx(&self) -> f64 {
+        match &self.plan {
+            AnyPlan::D2(plan) => plan.dx,
+            AnyPlan::D3(plan) => plan.dx,
+        }
+    }
+
     /// Lower and upper corner of the domain, or of the bodies where there is none \[m\].
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         match &self.plan {

@@ -245,6 +245,18 @@ impl<const D: usize> Shape<D> {
         }
     }
 
+    /// Whether it is known to have all that is between any two of its points.
+    fn is_convex(&self) -> bool {
+        match self {
+            Self::Box { .. } | Self::Ball { .. } | Self::HalfSpace { .. } | Self::Rod { .. } => {
+                true
+            }
+            Self::Polygon { .. } | Self::Mesh(_) | Self::Union(_) | Self::Difference(_) => false,
+            Self::Intersection(shapes) => shapes.iter().all(Self::is_convex),
+            Self::Moved { shape, .. } => shape.is_convex(),
+        }
+    }
+
     /// The shape after `motion`: of the same kind where there is one, so that its bounds are tight.
     #[must_use]
     pub fn moved(self, motion: Motion<D>) -> Self {
@@ -437,6 +449,11 @@ impl<const D: usize> Region<D> {
     /// Whether `p` is inside.
     pub fn contains(&self, p: &[f64; D]) -> bool {
         self.clip.contains(p) && self.shape.contains(p)
+    }
+
+    /// Whether it is known to have all that is between any two of its points.
+    pub(crate) fn is_convex(&self) -> bool {
+        self.shape.is_convex()
     }
 }
 

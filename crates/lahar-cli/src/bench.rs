@@ -1,0 +1,137 @@
+//! `lahar bench`: how fast scenes are computed, as a table, beside a baseline, and as plots of growth.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use lahar::Isa;
+use lahar_io::bench::{self, BenchError, Case, Machine, Options, Report};
+use serde_json::json;
+
+use crate::error::CliError;
+use crate::progress::with_prefix;
+use crate::{args, terminal};
+
+/// Measures the cases that are asked for.
+pub(crate) fn bench(args: &args::Bench) -> Result<ExitCode, CliError> {
+    let cases = wanted(args)?;
+    let baseline = args.compare.as_deref().map(read).transpose()?;
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads: Vec<usize> = match &args.threads[..] {
+        [] => vec![all],
+        given => given.iter().copied().map(usize::from).collect(),
+    };
+    let particles: Vec<Option<f64>> = match &args.growth {
+        Some(counts) => counts.iter().copied().map(Some).collect(),
+        None => vec![args.particles],
+    };
+    let mut report = Report {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        machine: Machine::here(),
+        results: Vec::new(),
+    };
+    for case in cases {
+        for &particles in &particles {
+            for &threads in &threads {
+                let options = Options {
+                    particles,
+                    isa: args.isa.unwrap_or_else(Isa::detect),
+                    runs: args.runs.into(),
+                };
+                report.results.push(measure(case, &options, threads)?);
+            }
+        }
+    }
+    let plots = if args.growth.is_some() {
+        let folder = args.output.clone();
+        draw(
+            &report,
+            &folder.unwrap_or_else(|| PathBuf::from("out/bench")),
+        )?
+    } else {
+        Vec::new()
+    };
+    if args.json {
+        terminal::print_json(&json!(report));
+    } else {
+        terminal::print(&report.text(baseline.as_ref()));
+        for path in plots {
+            terminal::print(&format!("  {}\n", path.display()));
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn measure(case: &Case, options: &Options, threads: usize) -> Result<bench::Measured, CliError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool
+        .map_err(|error| CliError::Machine(format!("cannot start {threads} threads: {error}")))?;
+    let measured = pool
+        .install(|| bench::measure(case, options))
+        .map_err(|error| match error {
+            BenchError::Scene(error) => CliError::Scene(error),
+            BenchError::Failure(what) => {
+                CliError::Machine(format!("{}: the simulation failed: {what}", case.name))
+            }
+        })?;
+    terminal::note(&format!(
+        "{}, {} on {threads} thread(s), {} particles: {} particle-steps/s",
+        case.name,
+        measured.isa,
+        measured.particles,
+        with_prefix(measured.median),
+    ));
+    Ok(measured)
+}
+
+/// The cases of the words on the command line.
+fn wanted(args: &args::Bench) -> Result<Vec<&'static Case>, CliError> {
+    if args.cases.is_empty() {
+        let many = if args.growth.is_some() {
+            1
+        } else {
+            bench::CASES.len()
+        };
+        return Ok(bench::CASES.iter().take(many).collect());
+    }
+    let find = |name: &String| {
+        bench::find(name).ok_or_else(|| {
+            let names: Vec<&str> = bench::CASES.iter().map(|case| case.name).collect();
+            CliError::Usage(format!(
+                "there is no case \"{name}\"; there are {}",
+                names.join(", ")
+            ))
+        })
+    };
+    args.cases.iter().map(find).collect()
+}
+
+/// A baseline.
+fn read(path: &Path) -> Result<Report, CliError> {
+    let wrong = |what: String| CliError::Usage(format!("{}: {what}", path.display()));
+    let text = fs::read_to_string(path).map_err(|error| wrong(format!("cannot read: {error}")))?;
+    serde_json::from_str(&text).map_err(|error| {
+        wrong(format!(
+            "it is not what `lahar bench --json` prints: {error}"
+        ))
+    })
+}
+
+/// Draws the plots into `folder`; returns their paths.
+fn draw(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, CliError> {
+    let cannot = |path: &Path, error: std::io::Error| {
+        CliError::Machine(format!("{}: cannot write: {error}", path.display()))
+    };
+    fs::create_dir_all(folder).map_err(|error| cannot(folder, error))?;
+    let plots = bench::growth(&report.results).into_iter();
+    plots
+        .map(|(name, plot)| {
+            let path = folder.join(name).with_extension("svg");
+            let svg = plot
+                .svg()
+                .map_err(|error| CliError::Machine(error.to_string()))?;
+            fs::write(&path, svg).map_err(|error| cannot(&path, error))?;
+            Ok(path)
+        })
+        .collect()
+}

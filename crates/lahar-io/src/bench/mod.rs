@@ -1,0 +1,375 @@
+//! How fast scenes are computed: particle-steps per second, by a fixed protocol.
+//!
+//! ```text
+//! case ─► its scene, dx by the number of particles ─► built ─► warm up: past the second sort
+//!                                                              └─► runs, timed: from one sort to the next
+//! ```
+//! A scene starts in motion, so that particles pass from block to block and meet walls soon. A run is timed
+//! with everything that `lahar run` does but output: sorting, corrections, time steps, the copy that a frame
+//! that fails begins again from. As many sorts fall into it as it is long: none is left out, none counted twice.
+
+mod machine;
+mod report;
+
+use lahar::{Isa, PhaseTimes, Simulate};
+use serde::{Deserialize, Serialize};
+
+use crate::error::SceneError;
+use crate::scene::{Limits, Precision, Scene};
+pub use machine::{Machine, seconds};
+pub use report::{Report, growth};
+
+/// What is measured.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Case {
+    /// As the command line spells it.
+    pub name: &'static str,
+    /// What it is, in a few words.
+    pub what: &'static str,
+    /// The built-in scene that it runs.
+    pub scene: &'static str,
+    /// Laid over it.
+    set: &'static [(&'static str, &'static str)],
+    /// With which instructions, if not with those that are asked for.
+    isa: Option<Isa>,
+}
+
+impl Case {
+    const fn of(name: &'static str, what: &'static str, scene: &'static str) -> Self {
+        Self {
+            name,
+            what,
+            scene,
+            set: &[],
+            isa: None,
+        }
+    }
+}
+
+/// All cases, in the order of the report.
+pub const CASES: &[Case] = &[
+    Case::of(
+        "dam-3d",
+        "default fluid, 8 particles a cell",
+        "bench-dam-3d",
+    ),
+    Case::of(
+        "dam-2d",
+        "default fluid, 4 particles a cell",
+        "bench-dam-2d",
+    ),
+    Case::of(
+        "jelly-3d",
+        "corotated: polar decomposition",
+        "bench-jelly-3d",
+    ),
+    Case::of(
+        "snow-3d",
+        "singular values, return mapping",
+        "bench-snow-3d",
+    ),
+    Case {
+        set: &[("precision", "\"f64\"")],
+        ..Case::of("dam-3d-f64", "dam-3d in f64", "bench-dam-3d")
+    },
+    Case {
+        isa: Some(Isa::Portable),
+        ..Case::of(
+            "dam-3d-portable",
+            "dam-3d by the portable instruction set",
+            "bench-dam-3d",
+        )
+    },
+];
+
+/// The case called `name`.
+pub fn find(name: &str) -> Option<&'static Case> {
+    CASES.iter().find(|case| case.name == name)
+}
+
+/// How cases are measured.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// About so many particles; the scene's own number if none.
+    pub particles: Option<f64>,
+    /// Instruction set, where the case does not say.
+    pub isa: Isa,
+    /// Timed runs.
+    pub runs: usize,
+}
+
+/// Why a case could not be measured.
+#[derive(Clone, Debug)]
+pub enum BenchError {
+    /// Its scene cannot be built.
+    Scene(Box<SceneError>),
+    /// The simulation failed.
+    Failure(String),
+}
+
+impl From<SceneError> for BenchError {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(Box::new(error))
+    }
+}
+
+/// Nanoseconds of wall time a particle and substep, by phase.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Nanoseconds {
+    /// Moving particles to their blocks.
+    pub sort: f64,
+    /// Setting volumes right by how full the grid is.
+    pub volume: f64,
+    /// Particles to grid.
+    pub scatter: f64,
+    /// Grid update.
+    pub grid: f64,
+    /// Grid to particles.
+    pub gather: f64,
+    /// What else a run needs.
+    pub other: f64,
+}
+
+/// What a case came to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// The case's name.
+    pub case: String,
+    /// "f32" or "f64".
+    pub precision: String,
+    /// The instruction set in use.
+    pub isa: String,
+    /// Threads that computed.
+    pub threads: usize,
+    /// Particles.
+    pub particles: u64,
+    /// Cells along 1 m.
+    pub cells_per_metre: f64,
+    /// Seconds that building the scene took.
+    pub build_seconds: f64,
+    /// Substeps before the runs.
+    pub warm_up: u64,
+    /// Particle-steps per second of each run.
+    pub runs: Vec<f64>,
+    /// The least of them.
+    pub min: f64,
+    /// Half of them are below, half above.
+    pub median: f64,
+    /// The largest.
+    pub max: f64,
+    /// Substeps in all runs.
+    pub substeps: u64,
+    /// Sorts in all runs.
+    pub sorts: u64,
+    /// Where the time goes, over all runs.
+    pub nanoseconds: Nanoseconds,
+    /// The part of the time in which a thread was ready to compute and had no processor: above some percent,
+    /// others were using the machine, and rates are too low. `None` where the system does not say.
+    #[serde(default)]
+    pub waited: Option<f64>,
+    /// The most memory that the process had since the case began, building included \[bytes\]; `None` where
+    /// the system does not say.
+    pub memory_peak: Option<u64>,
+}
+
+/// Sorts before the first run.
+const WARM_SORTS: u64 = 2;
+
+/// Substeps of a run at the least; it ends with the next sort.
+const LEAST_SUBSTEPS: u64 = 20;
+
+/// Substeps after which a run ends without a sort, and warming up too: nothing moves.
+const MOST_SUBSTEPS: u64 = 1000;
+
+/// The scene of a case.
+///
+/// # Errors
+/// If so many particles cannot be.
+pub fn scene(case: &Case, particles: Option<f64>) -> Result<Scene, SceneError> {
+    let limits = Limits { memory: u64::MAX };
+    let mut set: Vec<(String, String)> = case
+        .set
+        .iter()
+        .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
+        .collect();
+    let scene = Scene::load_within(case.scene, &set, &limits)?;
+    let Some(particles) = particles else {
+        return Ok(scene);
+    };
+    // Domains' sides are whole metres: a whole number of cells along one metre fits them all.
+    let finer = (particles / scene.expected_particles()).powf(1.0 / scene.dimension as f64);
+    let cells = (cells_per_metre(&scene) * finer).round().max(1.0);
+    set.push(("dx".to_owned(), format!("{:?}", 1.0 / cells)));
+    Scene::load_within(case.scene, &set, &limits)
+}
+
+fn cells_per_metre(scene: &Scene) -> f64 {
+    (1.0 / scene.dx()).round()
+}
+
+/// Measures a case on the threads of the pool that this is called in.
+///
+/// # Errors
+/// If the scene cannot be built or its simulation fails.
+pub fn measure(case: &Case, options: &Options) -> Result<Measured, BenchError> {
+    machine::forget_peak();
+    let began = seconds();
+    let scene = scene(case, options.particles)?;
+    let isa = case.isa.unwrap_or(options.isa);
+    let mut simulation = scene.build(isa)?.simulation;
+    let build_seconds = seconds() - began;
+    simulation.set_clock(seconds);
+    let warm_up = until_sorted(&mut *simulation, WARM_SORTS, 0)?;
+    let particles = simulation.particle_count() as u64;
+    let start = simulation.phase_times();
+    let waited = machine::waited();
+    let (mut rates, mut substeps, mut time) = (Vec::new(), 0, 0.0);
+    for _ in 0..options.runs.max(1) {
+        let began = seconds();
+        simulation.begin_frame();
+        let taken = until_sorted(&mut *simulation, 1, LEAST_SUBSTEPS)?;
+        let took = seconds() - began;
+        rates.push((particles * taken) as f64 / took);
+        substeps += taken;
+        time += took;
+    }
+    let end = simulation.phase_times();
+    let waited = machine::waited()
+        .zip(waited)
+        .map(|(end, start)| (end - start) / (time * rayon::current_num_threads() as f64));
+    let steps = (particles * substeps) as f64;
+    let mut sorted = rates.clone();
+    sorted.sort_by(f64::total_cmp);
+    Ok(Measured {
+        case: case.name.to_owned(),
+        precision: match scene.precision {
+            Precision::F32 => "f32",
+            Precision::F64 => "f64",
+        }
+        .to_owned(),
+        isa: isa.name().to_owned(),
+        threads: rayon::current_num_threads(),
+        particles,
+        cells_per_metre: cells_per_metre(&scene),
+        build_seconds,
+        warm_up,
+        min: sorted[0],
+        median: median(&sorted),
+        max: sorted[sorted.len() - 1],
+        runs: rates,
+        substeps,
+        sorts: end.sorts - start.sorts,
+        nanoseconds: Nanoseconds::between(&start, &end, time, steps),
+        waited,
+        memory_peak: machine::peak(),
+    })
+}
+
+/// Substeps, at least `least`, until particles have been sorted `sorts` times; returns how many.
+fn until_sorted(simulation: &mut dyn Simulate, sorts: u64, least: u64) -> Result<u64, BenchError> {
+    let before = simulation.phase_times().sorts;
+    let mut substeps = 0;
+    let mut sorted = 0;
+    while substeps < MOST_SUBSTEPS {
+        let advance = simulation
+            .substep()
+            .map_err(|failure| BenchError::Failure(failure.to_string()))?;
+        substeps += advance.substeps;
+        let now = simulation.phase_times().sorts - before;
+        if now > sorted && now >= sorts && substeps >= least {
+            break;
+        }
+        sorted = now;
+    }
+    Ok(substeps)
+}
+
+/// Of sorted numbers, at least one.
+fn median(sorted: &[f64]) -> f64 {
+    let half = sorted.len() / 2;
+    if sorted.len().is_multiple_of(2) {
+        0.5 * (sorted[half - 1] + sorted[half])
+    } else {
+        sorted[half]
+    }
+}
+
+impl Nanoseconds {
+    /// The phases between two readings, `time` seconds apart, for so many particle-steps.
+    fn between(start: &PhaseTimes, end: &PhaseTimes, time: f64, steps: f64) -> Self {
+        let each = |phase: fn(&PhaseTimes) -> f64| 1e9 * (phase(end) - phase(start)) / steps;
+        let mut phases = Self {
+            sort: each(|times| times.sort),
+            volume: each(|times| times.volume),
+            scatter: each(|times| times.scatter),
+            grid: each(|times| times.grid),
+            gather: each(|times| times.gather),
+            other: 0.0,
+        };
+        phases.other = (1e9 * time / steps - phases.sum()).max(0.0);
+        phases
+    }
+
+    /// All phases.
+    pub fn sum(&self) -> f64 {
+        self.sort + self.volume + self.scatter + self.grid + self.gather + self.other
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_of_numbers() {
+        assert_eq!(median(&[1.0, 2.0, 9.0]), 2.0);
+        assert_eq!(median(&[1.0, 2.0, 4.0, 9.0]), 3.0);
+    }
+
+    #[test]
+    fn names_are_one_each() {
+        for case in CASES {
+            assert_eq!(find(case.name), Some(case));
+        }
+        assert_eq!(find("dam"), None);
+    }
+
+    #[test]
+    fn a_scene_has_about_the_particles_asked_for() {
+        for case in CASES {
+            for wanted in [3e4, 1e6] {
+                let count = scene(case, Some(wanted)).unwrap().expected_particles();
+                assert!(
+                    (count / wanted - 1.0).abs() < 0.1,
+                    "{}: {count} of {wanted}",
+                    case.name
+                );
+            }
+            let own = scene(case, None).unwrap().expected_particles();
+            assert!((9e5..1.1e6).contains(&own), "{}: {own}", case.name);
+        }
+    }
+
+    #[test]
+    fn a_case_is_measured_past_its_sorts() {
+        let options = Options {
+            particles: Some(4000.0),
+            isa: Isa::Portable,
+            runs: 3,
+        };
+        for case in CASES {
+            let measured = measure(case, &options).unwrap();
+            assert_eq!(measured.runs.len(), 3, "{}", case.name);
+            assert!(measured.sorts >= 3, "{}: {}", case.name, measured.sorts);
+            assert!(measured.warm_up < MOST_SUBSTEPS, "{}", case.name);
+            assert!(measured.min <= measured.median && measured.median <= measured.max);
+            // Phases cover the time: particle-steps over it is the mean rate.
+            let mean = 1e9 / measured.nanoseconds.sum();
+            assert!(
+                measured.min * 0.999 <= mean && mean <= measured.max * 1.001,
+                "{}",
+                case.name
+            );
+        }
+    }
+}

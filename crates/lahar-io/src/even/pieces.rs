@@ -1,0 +1,131 @@
+//! How full the shape itself makes the nodes: the shape cut into small pieces, each spread over nodes.
+//!
+//! Pieces stand on a lattice, and weights are products over axes. So a line of pieces is spread along
+//! the first axis, lines along the second, planes along the third: a piece costs a few additions.
+
+use super::nodes::{Lattice, Nodes};
+use crate::sampling::lattice_size;
+use crate::shape::Region;
+use lahar::kernel::{BSpline, STENCIL};
+use rayon::prelude::*;
+
+/// Pieces along dx.
+const FINE: f64 = 4.0;
+
+/// A place of pieces on one axis.
+struct Place {
+    /// \[m\].
+    x: f64,
+    /// By lattice: the first node that it touches, and the weights of that and the next.
+    touched: [(usize, [f64; STENCIL]); 2],
+}
+
+/// Sums at the nodes of both lattices, or of some of their axes.
+type Sums = [Vec<f64>; 2];
+
+fn nothing(len: usize) -> Sums {
+    [vec![0.0; len], vec![0.0; len]]
+}
+
+impl Place {
+    /// Adds `line`, which is at this place, to the nodes along its axis.
+    fn spread(&self, line: &Sums, sums: &mut Sums) {
+        for ((line, sums), (base, weights)) in line.iter().zip(sums).zip(&self.touched) {
+            let n = line.len();
+            let nodes = sums[base * n..].chunks_exact_mut(n);
+            for (node, weight) in nodes.zip(weights) {
+                for (sum, value) in node.iter_mut().zip(line) {
+                    *sum += weight * value;
+                }
+            }
+        }
+    }
+}
+
+/// Σ w over the pieces in `region`, at each node of both lattices.
+pub(super) fn filled<K: BSpline, const D: usize>(nodes: &Nodes<D>, region: &Region<D>) -> Sums {
+    let bounds = region.bounds();
+    let size = lattice_size(region, nodes.dx() / FINE);
+    let places: [Vec<Place>; D] = core::array::from_fn(|axis| {
+        let place = |number: usize| {
+            let part = (number as f64 + 0.5) / size[axis] as f64;
+            let x = bounds.min[axis] + bounds.side(axis) * part;
+            let (base, frac) = nodes.base::<K>(axis, x);
+            let touched = Lattice::BOTH.map(|lattice| {
+                let (base, frac) = lattice.base(base, frac);
+                (base, K::weights(frac))
+            });
+            Place { x, touched }
+        };
+        (0..size[axis]).map(place).collect()
+    });
+    let mut whole_line = nothing(nodes.stride(1));
+    for place in &places[0] {
+        place.spread(&[vec![1.0], vec![1.0]], &mut whole_line);
+    }
+    let pieces = Pieces {
+        nodes,
+        region,
+        places,
+        whole_line,
+    };
+    let last = &pieces.places[D - 1];
+    let planes: Vec<Sums> = last.par_iter().map(|place| pieces.plane(place)).collect();
+    let mut filled = nothing(nodes.len());
+    for (place, plane) in last.iter().zip(&planes) {
+        place.spread(plane, &mut filled);
+    }
+    filled
+}
+
+struct Pieces<'a, const D: usize> {
+    nodes: &'a Nodes<D>,
+    region: &'a Region<D>,
+    places: [Vec<Place>; D],
+    /// What a line along the first axis comes to if all of its pieces are inside.
+    whole_line: Sums,
+}
+
+impl<const D: usize> Pieces<'_, D> {
+    /// What pieces at a place of the last axis say of the nodes of the other axes.
+    fn plane(&self, place: &Place) -> Sums {
+        let mut x = [0.0; D];
+        x[D - 1] = place.x;
+        let mut sums = nothing(self.nodes.stride(D - 1));
+        let mut line = nothing(self.nodes.stride(1));
+        if D == 2 {
+            self.line(&mut x, &mut sums);
+            return sums;
+        }
+        for place in &self.places[1] {
+            x[1] = place.x;
+            line.iter_mut().for_each(|line| line.fill(0.0));
+            if self.line(&mut x, &mut line) {
+                place.spread(&line, &mut sums);
+            }
+        }
+        sums
+    }
+
+    /// Adds the pieces of a line along the first axis; whether there are any.
+    fn line(&self, x: &mut [f64; D], line: &mut Sums) -> bool {
+        let mut is_inside = |place: &Place| {
+            x[0] = place.x;
+            self.region.contains(x)
+        };
+        let places = &self.places[0];
+        // What is convex has all that is between two of its points.
+        let ends = [places.first(), places.last()];
+        if self.region.is_convex() && ends.into_iter().flatten().all(&mut is_inside) {
+            line.clone_from(&self.whole_line);
+            return true;
+        }
+        let one = [vec![1.0], vec![1.0]];
+        let mut any = false;
+        for place in places.iter().filter(|place| is_inside(place)) {
+            place.spread(&one, line);
+            any = true;
+        }
+        any
+    }
+}
