@@ -125,7 +125,7 @@ pub(crate) struct Run {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 
-    /// What to write of a frame: npz, png, gif (a film of all), or none; the scene's choice if not given
+    /// What to write of a frame: particles as npz, vtk, ply or bgeo, png, gif (a film of all), or none; the scene's choice if not given
     #[arg(long, value_name = "FORMATS", value_delimiter = ',')]
     pub(crate) format: Option<Vec<String>>,
 

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use lahar::{Field, Isa, particles};
+use lahar_io::export::{FORMATS, Format};
 use lahar_io::image::{self, Camera, Colouring, Renderer, Scenery, Style};
-use lahar_io::npz::Compression;
 use lahar_io::output::{Film, Pictures, RunFolder, film_pace};
 use lahar_io::scene::Scene;
 
@@ -37,10 +37,10 @@ pub(crate) struct Plan {
 }
 
 /// What is written of frames.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Formats {
-    /// Particles.
-    pub(crate) npz: bool,
+    /// Particles, in the table's order.
+    pub(crate) particles: Vec<Format>,
     /// Pictures, every so many frames; 0: none.
     pub(crate) png: u64,
     /// A film.
@@ -52,31 +52,32 @@ impl Formats {
     fn from_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, String> {
         let mut formats = Self::default();
         for name in names {
-            match name.trim() {
-                "npz" => formats.npz = true,
-                "png" => formats.png = 1,
-                "gif" => formats.gif = true,
-                "none" => {}
-                "vtk" | "vtp" | "ply" | "bgeo" => {
-                    return Err(format!(
-                        "the format \"{name}\" is not written yet; there are npz, png, gif and none"
-                    ));
-                }
+            match (name.trim(), Format::named(name.trim())) {
+                (_, Some(format)) => formats.particles.push(format),
+                ("png", _) => formats.png = 1,
+                ("gif", _) => formats.gif = true,
+                ("none", _) => {}
                 _ => {
+                    let particles: Vec<_> = FORMATS.iter().map(|info| info.name).collect();
                     return Err(format!(
-                        "there is no format \"{name}\"; there are npz, png, gif and none"
+                        "there is no format \"{name}\"; there are {}, png, gif and none",
+                        particles.join(", ")
                     ));
                 }
             }
         }
+        let order = |format: &Format| FORMATS.iter().position(|info| info.format == *format);
+        formats.particles.sort_by_key(order);
+        formats.particles.dedup();
         Ok(formats)
     }
 
     /// Their names.
-    pub(crate) fn names(self) -> Vec<&'static str> {
-        let names: Vec<_> = [(self.npz, "npz"), (self.png > 0, "png"), (self.gif, "gif")]
-            .into_iter()
-            .filter_map(|(wanted, name)| wanted.then_some(name))
+    pub(crate) fn names(&self) -> Vec<&'static str> {
+        let pictures = [(self.png > 0, "png"), (self.gif, "gif")];
+        let names: Vec<_> = (self.particles.iter())
+            .map(|format| format.info().name)
+            .chain((pictures.into_iter()).filter_map(|(wanted, name)| wanted.then_some(name)))
             .collect();
         if names.is_empty() {
             vec!["none"]
@@ -134,7 +135,7 @@ impl Plan {
             threads: all_threads(),
             frames,
             formats: Formats {
-                npz: false,
+                particles: Vec::new(),
                 png: (frames / DEMONSTRATION_PICTURES).max(1),
                 gif: true,
             },
@@ -169,27 +170,25 @@ impl Plan {
     /// The fields that frames are made of.
     pub(crate) fn fields(&self) -> Vec<Field> {
         let chosen = |info: &particles::FieldInfo| {
-            let in_npz = self.formats.npz
-                && self
-                    .scene
-                    .output
-                    .fields
-                    .as_ref()
-                    .is_none_or(|names| names.iter().any(|name| name == info.name));
+            let particles = &self.formats.particles;
+            let chosen = self
+                .scene
+                .output
+                .fields
+                .as_ref()
+                .is_none_or(|names| names.iter().any(|name| name == info.name));
+            let placed = info.field == Field::Position;
+            let in_files = !particles.is_empty() && chosen
+                || placed && particles.iter().any(|format| format.needs_positions());
             let drawn =
                 (self.formats.png > 0 || self.formats.gif) && image::FIELDS.contains(&info.field);
-            in_npz || drawn
+            in_files || drawn
         };
         particles::FIELDS
             .iter()
             .filter(|info| chosen(info))
             .map(|info| info.field)
             .collect()
-    }
-
-    /// Compression of particles.
-    pub(crate) fn npz(&self) -> Option<Compression> {
-        self.formats.npz.then_some(Compression::Stored)
     }
 
     /// Pictures, if wanted.
@@ -304,11 +303,8 @@ mod tests {
         let formats = Formats::from_names(["npz", "gif"]).unwrap();
         assert_eq!(formats.names(), ["npz", "gif"]);
         assert_eq!(Formats::from_names(["none"]).unwrap().names(), ["none"]);
-        assert!(
-            Formats::from_names(["ply"])
-                .unwrap_err()
-                .contains("not written yet")
-        );
+        let formats = Formats::from_names(["bgeo", "ply", "vtk", "npz", "vtp"]).unwrap();
+        assert_eq!(formats.names(), ["npz", "vtk", "ply", "bgeo"]);
         assert!(
             Formats::from_names(["bmp"])
                 .unwrap_err()

@@ -50,7 +50,7 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
     let writer = Writer::start(output::Plan {
         folder: folder.clone(),
         dimension: simulation.dimension(),
-        npz: plan.npz(),
+        formats: plan.formats.particles.clone(),
         pictures: plan.pictures(&scenery),
         film: plan.film(&scenery),
     });

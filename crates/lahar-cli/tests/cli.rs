@@ -167,7 +167,7 @@ fn wrong_commands_and_scenes_are_code_2() {
     for words in [
         &["run", "no-such-scene"][..],
         &["run", "broken.toml"],
-        &["run", "dam-break", "--format=ply"],
+        &["run", "dam-break", "--format=exr"],
         &["run", "dam-break", "--frames=1", "--until=1"],
         &["run", "dam-break", "--isa=sse9"],
         &["run", "dam-break", "--set", "dx"],

@@ -4,6 +4,7 @@ pub mod bench;
 pub mod builtin;
 pub mod error;
 mod even;
+pub mod export;
 mod expression;
 pub mod image;
 mod mesh_file;

@@ -131,7 +131,13 @@ pub(crate) fn parse_ply<const D: usize>(
             .map(|(_, column)| *column)
             .filter(|_| property.length.is_none())
     };
-    let columns: Vec<Option<Column>> = vertex.properties.iter().map(column).collect();
+    let mut columns: Vec<Option<Column>> = vertex.properties.iter().map(column).collect();
+    if columns.contains(&Some(Column::Gradient(0, 0))) {
+        // Frames have both; F says more.
+        for column in &mut columns {
+            column.take_if(|column| *column == Column::Jacobian);
+        }
+    }
     let given: Vec<Column> = columns.iter().flatten().copied().collect();
     if let Some(twice) = (1..given.len()).find(|&i| given[..i].contains(&given[i])) {
         let (name, _) = known

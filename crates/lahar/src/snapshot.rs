@@ -4,16 +4,20 @@ use crate::instance::Instance;
 use crate::parallel;
 use crate::particles::{Data, Field, Snapshot};
 use crate::simulation::Simulation;
-use crate::store::Layout;
+use crate::store::{Group, Layout};
 
 /// Where a particle lies.
 #[derive(Clone, Copy)]
-struct Place<const D: usize> {
-    id: u32,
+struct Place {
     group: u32,
     row: u32,
-    block: [i32; D],
 }
+
+/// The place of an id that no particle has any more.
+const NOWHERE: Place = Place {
+    group: u32::MAX,
+    row: u32::MAX,
+};
 
 /// Rows that are worth a piece of parallel work of their own.
 const SMALLEST_PIECE: usize = 1 << 13;
@@ -22,22 +26,21 @@ pub(crate) fn snapshot<T: Instance<D>, const D: usize>(
     simulation: &Simulation<T, D>,
     fields: &[Field],
 ) -> Snapshot {
-    let mut places: Vec<Place<D>> =
-        Vec::with_capacity(simulation.groups.iter().map(|g| g.len()).sum());
-    for (index, group) in simulation.groups.iter().enumerate() {
-        for run in &group.runs {
-            places.extend(run.rows().map(|row| Place {
-                id: group.id[row],
-                group: index as u32,
-                row: row as u32,
-                block: run.block,
-            }));
-        }
-    }
-    places.sort_unstable_by_key(|place| place.id);
+    let places = places(simulation);
+    let blocks = match fields.contains(&Field::Position) {
+        true => simulation.groups.iter().map(blocks).collect(),
+        false => Vec::new(),
+    };
+    let mut described = described(simulation, fields, &places).into_iter();
     let columns = fields
         .iter()
-        .map(|&field| (field, column(simulation, field, &places)))
+        .map(|&field| {
+            let data = match is_described(field) {
+                true => T::data(described.next().expect("one for each of these fields")),
+                false => column(simulation, field, &places, &blocks),
+            };
+            (field, data)
+        })
         .collect();
     Snapshot {
         time: simulation.control.time(),
@@ -47,73 +50,168 @@ pub(crate) fn snapshot<T: Instance<D>, const D: usize>(
     }
 }
 
+/// Places by ascending id. Ids are given in order, so each has its slot and nothing need be sorted.
+fn places<T: Instance<D>, const D: usize>(simulation: &Simulation<T, D>) -> Vec<Place> {
+    let mut slots = vec![NOWHERE; simulation.next_id as usize];
+    let mut count = 0;
+    for (index, group) in simulation.groups.iter().enumerate() {
+        count += group.id.len();
+        for (row, &id) in group.id.iter().enumerate() {
+            slots[id as usize] = Place {
+                group: index as u32,
+                row: row as u32,
+            };
+        }
+    }
+    if count < slots.len() {
+        slots.retain(|place| place.group != NOWHERE.group);
+    }
+    slots
+}
+
+/// The block of each row of a group.
+fn blocks<T: Instance<D>, const D: usize>(group: &Group<T, D>) -> Vec<[i32; D]> {
+    let mut blocks = Vec::with_capacity(group.id.len());
+    for run in &group.runs {
+        blocks.resize(run.end as usize, run.block);
+    }
+    blocks
+}
+
+/// A field that is stored as it is.
 fn column<T: Instance<D>, const D: usize>(
     simulation: &Simulation<T, D>,
     field: Field,
-    places: &[Place<D>],
+    places: &[Place],
+    blocks: &[Vec<[i32; D]>],
 ) -> Data {
     let width = field.info().shape.len(D);
-    let group = |place: &Place<D>| &simulation.groups[place.group as usize];
+    let group = |place: &Place| &simulation.groups[place.group as usize];
     match field {
-        Field::Id => Data::U32(places.iter().map(|place| place.id).collect()),
-        Field::Material => Data::U32(places.iter().map(|place| place.group).collect()),
-        Field::Body => Data::U32(
-            places
-                .iter()
-                .map(|place| group(place).body.get(place.row as usize))
-                .collect(),
-        ),
-        Field::Position => Data::F64(fill(places, width, |place, out| {
-            out.copy_from_slice(&simulation.position(
-                group(place),
-                place.block,
-                place.row as usize,
-            ));
+        Field::Id => Data::U32(fill(places, width, |place, out| {
+            out[0] = group(place).id[place.row as usize];
         })),
-        _ => {
-            let values = fill(places, width, |place, out: &mut [T]| {
-                let (group, row) = (group(place), place.row as usize);
-                let at = |column: usize| group.columns[column][row];
-                match field {
-                    Field::Velocity => {
-                        (0..D).for_each(|axis| out[axis] = at(Layout::velocity(D) + axis))
-                    }
-                    Field::Affine => {
-                        (0..D * D).for_each(|k| out[k] = at(Layout::affine(D) + k % D * D + k / D));
-                    }
-                    Field::Mass => out[0] = group.mass.get(row),
-                    Field::Volume0 => out[0] = group.volume0.get(row),
-                    _ => {
-                        let mut strain = [0.0; 16];
-                        let strain = &mut strain[..group.law.strain_columns()];
-                        for (column, value) in strain.iter_mut().enumerate() {
-                            *value = at(Layout::strain(D) + column).to_f64();
-                        }
-                        let gradient = core::array::from_fn(|i| {
-                            core::array::from_fn(|j| at(Layout::affine(D) + j * D + i).to_f64())
-                        });
-                        let state = group.law.describe(strain, gradient);
-                        match field {
-                            Field::Jacobian => out[0] = T::from_f64(state.jacobian),
-                            Field::PlasticJacobian => out[0] = T::from_f64(state.plastic_jacobian),
-                            Field::Pressure => out[0] = T::from_f64(state.pressure),
-                            _ => (0..D * D).for_each(|k| {
-                                out[k] = T::from_f64(state.deformation_gradient[k / D][k % D])
-                            }),
-                        }
-                    }
+        Field::Material => Data::U32(fill(places, width, |place, out| out[0] = place.group)),
+        Field::Body => Data::U32(fill(places, width, |place, out| {
+            out[0] = group(place).body.get(place.row as usize);
+        })),
+        Field::Position => Data::F64(fill(places, width, |place, out| {
+            let row = place.row as usize;
+            let block = blocks[place.group as usize][row];
+            out.copy_from_slice(&simulation.position(group(place), block, row));
+        })),
+        _ => T::data(fill(places, width, |place, out: &mut [T]| {
+            let (group, row) = (group(place), place.row as usize);
+            let at = |column: usize| group.columns[column][row];
+            match field {
+                Field::Velocity => {
+                    (0..D).for_each(|axis| out[axis] = at(Layout::velocity(D) + axis))
                 }
-            });
-            T::data(values)
+                Field::Affine => {
+                    (0..D * D).for_each(|k| out[k] = at(Layout::affine(D) + k % D * D + k / D));
+                }
+                Field::Mass => out[0] = group.mass.get(row),
+                _ => out[0] = group.volume0.get(row),
+            }
+        })),
+    }
+}
+
+/// Whether a field follows from the strain by the material's law.
+fn is_described(field: Field) -> bool {
+    match field {
+        Field::Jacobian | Field::DeformationGradient | Field::PlasticJacobian | Field::Pressure => {
+            true
+        }
+        Field::Id
+        | Field::Body
+        | Field::Material
+        | Field::Position
+        | Field::Velocity
+        | Field::Affine
+        | Field::Mass
+        | Field::Volume0 => false,
+    }
+}
+
+/// The described ones of `fields`, in that order; the law is asked once a particle.
+fn described<T: Instance<D>, const D: usize>(
+    simulation: &Simulation<T, D>,
+    fields: &[Field],
+    places: &[Place],
+) -> Vec<Vec<T>> {
+    let fields: Vec<Field> = fields
+        .iter()
+        .copied()
+        .filter(|f| is_described(*f))
+        .collect();
+    let width = |field: &Field| field.info().shape.len(D);
+    let mut values: Vec<Vec<T>> = (fields.iter())
+        .map(|field| vec![T::default(); places.len() * width(field)])
+        .collect();
+    if fields.is_empty() {
+        return values;
+    }
+    let columns = (fields.iter().zip(&mut values))
+        .map(|(field, values)| (*field, values.as_mut_slice()))
+        .collect();
+    let grain = parallel::grain(places.len(), SMALLEST_PIECE);
+    describe_pieces(simulation, places, columns, grain);
+    values
+}
+
+/// Halves the work until pieces are small enough, and does it.
+fn describe_pieces<T: Instance<D>, const D: usize>(
+    simulation: &Simulation<T, D>,
+    places: &[Place],
+    mut columns: Vec<(Field, &mut [T])>,
+    grain: usize,
+) {
+    if places.len() > grain {
+        let half = places.len() / 2;
+        let (low, high) = places.split_at(half);
+        let (low_columns, high_columns) = (columns.into_iter())
+            .map(|(field, values)| {
+                let (low, high) = values.split_at_mut(half * field.info().shape.len(D));
+                ((field, low), (field, high))
+            })
+            .unzip();
+        parallel::join(
+            || describe_pieces(simulation, low, low_columns, grain),
+            || describe_pieces(simulation, high, high_columns, grain),
+        );
+        return;
+    }
+    for (index, place) in places.iter().enumerate() {
+        let (group, row) = (&simulation.groups[place.group as usize], place.row as usize);
+        let at = |column: usize| group.columns[column][row].to_f64();
+        let mut strain = [0.0; 16];
+        let strain = &mut strain[..group.law.strain_columns()];
+        for (column, value) in strain.iter_mut().enumerate() {
+            *value = at(Layout::strain(D) + column);
+        }
+        let gradient =
+            core::array::from_fn(|i| core::array::from_fn(|j| at(Layout::affine(D) + j * D + i)));
+        let state = group.law.describe(strain, gradient);
+        for (field, values) in &mut columns {
+            match field {
+                Field::Jacobian => values[index] = T::from_f64(state.jacobian),
+                Field::PlasticJacobian => values[index] = T::from_f64(state.plastic_jacobian),
+                Field::Pressure => values[index] = T::from_f64(state.pressure),
+                _ => (0..D * D).for_each(|k| {
+                    values[index * D * D + k] =
+                        T::from_f64(state.deformation_gradient[k / D][k % D]);
+                }),
+            }
         }
     }
 }
 
 /// `width` numbers a place, side by side.
-fn fill<U: Copy + Default + Send, const D: usize>(
-    places: &[Place<D>],
+fn fill<U: Copy + Default + Send>(
+    places: &[Place],
     width: usize,
-    write: impl Fn(&Place<D>, &mut [U]) + Sync,
+    write: impl Fn(&Place, &mut [U]) + Sync,
 ) -> Vec<U> {
     let mut values = vec![U::default(); places.len() * width];
     let grain = parallel::grain(places.len(), SMALLEST_PIECE);

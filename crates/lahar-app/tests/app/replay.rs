@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 use lahar::{Data, Field, Snapshot};
 use lahar_app::shelf::Shelf;
 use lahar_app::solver::Condition;
-use lahar_io::npz::Compression;
+use lahar_io::export::Format;
 use lahar_io::output::{PhaseSeconds, Record, Status, frame_name, write_frame};
 
 /// Leaves what a run of so many frames would.
@@ -61,7 +61,7 @@ fn record(folder: &std::path::Path, frames: u64) {
             ],
         };
         let path = folder.join("frames").join(frame_name(frame, "npz"));
-        write_frame(&path, &snapshot, Compression::Stored).unwrap();
+        write_frame(&path, &snapshot, Format::Npz).unwrap();
     }
 }
 

@@ -7,10 +7,11 @@ use std::path::{Path, PathBuf};
 use super::OutputError;
 
 /// The files and folders that a run writes, and that `--overwrite` removes.
-const OWN: [&str; 7] = [
+const OWN: [&str; 8] = [
     "run.json",
     "diagnostics.csv",
     "frames",
+    "particles.pvd",
     "images",
     "video.gif",
     "probes",
@@ -110,6 +111,11 @@ impl RunFolder {
     /// `frames/` in it.
     pub fn frames(&self) -> PathBuf {
         self.path.join("frames")
+    }
+
+    /// `particles.pvd` in it: the frames by time, for ParaView.
+    pub fn time_series(&self) -> PathBuf {
+        self.path.join("particles.pvd")
     }
 
     /// `probes/` in it.

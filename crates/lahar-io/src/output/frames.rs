@@ -1,50 +1,29 @@
-//! `frames/000000.npz`: the particles of a moment.
+//! `frames/000000.npz` and the like: the particles of a moment.
 
 use std::path::Path;
 
-use lahar::particles::FIELDS;
-use lahar::particles::Shape;
-use lahar::{Data, Snapshot};
+use lahar::Snapshot;
 
 use super::{OutputError, write_whole};
-use crate::npz::{Compression, NpzWriter};
+use crate::export::Format;
 
 /// `000000.npz` for frame 0 and the ending `npz`.
 pub fn frame_name(index: u64, ending: &str) -> String {
     format!("{index:06}.{ending}")
 }
 
-/// Writes what fields `snapshot` has, by the names and in the order of [`FIELDS`], and `time` \[s\].
+/// Writes what fields `snapshot` has, whole or not at all.
 ///
 /// # Errors
 /// If the file cannot be written.
-pub fn write_frame(
-    path: &Path,
-    snapshot: &Snapshot,
-    compression: Compression,
-) -> Result<(), OutputError> {
-    let (n, d) = (snapshot.count, snapshot.dimension);
-    write_whole(path, false, |writer| {
-        let mut npz = NpzWriter::new(writer, compression);
-        for info in FIELDS {
-            if let Some(data) = snapshot.get(info.field) {
-                let shape: &[usize] = match info.shape {
-                    Shape::Scalar => &[n],
-                    Shape::Vector => &[n, d],
-                    Shape::Matrix => &[n, d, d],
-                };
-                npz.add(info.name, shape, data)?;
-            }
-        }
-        npz.add("time", &[], &Data::F64(vec![snapshot.time]))?;
-        npz.finish()
-    })
+pub fn write_frame(path: &Path, snapshot: &Snapshot, format: Format) -> Result<(), OutputError> {
+    write_whole(path, false, |writer| format.write(writer, snapshot))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lahar::Field;
+    use lahar::{Data, Field};
 
     #[test]
     fn a_frame_reads_back() {
@@ -60,7 +39,7 @@ mod tests {
                 (Field::Affine, Data::F32((0..9_u8).map(f32::from).collect())),
             ],
         };
-        write_frame(&path, &snapshot, Compression::Deflated).unwrap();
+        write_frame(&path, &snapshot, Format::Npz).unwrap();
         let arrays = crate::npz::read(&path).unwrap();
         let names: Vec<_> = arrays
             .iter()
@@ -92,7 +71,7 @@ mod tests {
             count: 0,
             columns: vec![],
         };
-        let error = write_frame(path, &snapshot, Compression::Stored).unwrap_err();
+        let error = write_frame(path, &snapshot, Format::Npz).unwrap_err();
         assert!(
             error
                 .to_string()

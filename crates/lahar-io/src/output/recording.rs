@@ -172,7 +172,7 @@ fn frame_files(folder: &Path) -> Vec<PathBuf> {
 mod tests {
     use super::super::{PhaseSeconds, Status, frame_name, write_frame};
     use super::*;
-    use crate::npz::Compression;
+    use crate::export::Format;
 
     fn run(folder: &Path, frames: u64) {
         let record = Record {
@@ -214,7 +214,7 @@ mod tests {
             };
             // Every other frame was written.
             let path = folder.join("frames").join(frame_name(2 * i, "npz"));
-            write_frame(&path, &snapshot, Compression::Stored).unwrap();
+            write_frame(&path, &snapshot, Format::Npz).unwrap();
         }
     }
 
@@ -264,7 +264,7 @@ mod tests {
             count: 1,
             columns: vec![(Field::Position, Data::F64(vec![0.0; 3]))],
         };
-        write_frame(&path, &snapshot, Compression::Stored).unwrap();
+        write_frame(&path, &snapshot, Format::Npz).unwrap();
         let why = recording.frame(1).unwrap_err().to_string();
         assert!(why.contains("shape [1, 3], not [1, 2]"), "{why}");
     }

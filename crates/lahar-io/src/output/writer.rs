@@ -1,15 +1,15 @@
 //! The thread that writes, so that the solver need not wait: a few frames may be under way, then it does.
 
 use std::fs;
-use std::sync::mpsc::{SyncSender, sync_channel};
+use std::sync::mpsc::{Sender, SyncSender, channel, sync_channel};
 use std::thread::{Builder, JoinHandle};
 
 use lahar::{Diagnostics, ProbeSamples, Snapshot};
 
 use super::probes::ProbeFiles;
 use super::{DiagnosticsFile, OutputError, RunFolder, frame_name, write_frame, write_whole};
+use crate::export::{Format, TimeSeries};
 use crate::image::{self, Renderer};
-use crate::npz::Compression;
 
 /// Frames that may be under way: one being written, one ready.
 const UNDER_WAY: usize = 2;
@@ -20,8 +20,8 @@ pub struct Plan {
     pub folder: RunFolder,
     /// 2 or 3.
     pub dimension: usize,
-    /// Particles of every frame as `.npz`, if wanted.
-    pub npz: Option<Compression>,
+    /// Particles of every frame, a file for each of these.
+    pub formats: Vec<Format>,
     /// Pictures of every frame as PNG, if wanted.
     pub pictures: Option<Pictures>,
     /// The film, if wanted.
@@ -90,7 +90,13 @@ pub struct Written {
     pub film: bool,
 }
 
-struct Job {
+enum Job {
+    Frame(Box<Frame>),
+    /// To be answered when everything before it is written.
+    Barrier(Sender<()>),
+}
+
+struct Frame {
     index: u64,
     snapshot: Option<Snapshot>,
     diagnostics: Diagnostics,
@@ -112,21 +118,30 @@ impl Writer {
         let folder = &plan.folder;
         let diagnostics = DiagnosticsFile::create(&folder.diagnostics(), plan.dimension)?;
         for (wanted, path) in [
-            (plan.npz.is_some(), folder.frames()),
+            (!plan.formats.is_empty(), folder.frames()),
             (plan.pictures.is_some(), folder.images()),
         ] {
             if wanted {
                 fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
             }
         }
+        let series = folder.time_series();
+        let series = match plan.formats.contains(&Format::Vtk) {
+            true => Some(TimeSeries::start(&series, 0).map_err(OutputError::at(&series))?),
+            false => None,
+        };
         let (jobs, queue) = sync_channel::<Job>(UNDER_WAY - 1);
         let path = folder.path().to_owned();
         let thread = Builder::new()
             .name("output".to_owned())
             .spawn(move || {
-                let mut work = Work::new(plan, diagnostics);
+                let mut work = Work::new(plan, diagnostics, series);
                 for job in queue {
-                    work.frame(&job)?;
+                    match job {
+                        Job::Frame(frame) => work.frame(&frame)?,
+                        // Who asked may have gone.
+                        Job::Barrier(done) => drop(done.send(())),
+                    }
                 }
                 work.finish()
             })
@@ -149,12 +164,29 @@ impl Writer {
         diagnostics: Diagnostics,
         probes: Vec<ProbeSamples>,
     ) -> Result<(), OutputError> {
-        let job = Job {
+        self.hand_over(Job::Frame(Box::new(Frame {
             index,
             snapshot,
             diagnostics,
             probes,
-        };
+        })))
+    }
+
+    /// Waits until all frames handed over are written.
+    ///
+    /// # Errors
+    /// What went wrong with one of them.
+    pub fn flush(&mut self) -> Result<(), OutputError> {
+        let (done, answer) = channel();
+        self.hand_over(Job::Barrier(done))?;
+        match answer.recv() {
+            Ok(()) => Ok(()),
+            // The thread went without an answer.
+            Err(_) => self.end().map(|_| ()),
+        }
+    }
+
+    fn hand_over(&mut self, job: Job) -> Result<(), OutputError> {
         if self
             .jobs
             .as_ref()
@@ -198,12 +230,13 @@ struct Work {
     plan: Plan,
     diagnostics: DiagnosticsFile,
     probes: ProbeFiles,
+    series: Option<TimeSeries>,
     film: Option<image::Film>,
     written: Written,
 }
 
 impl Work {
-    fn new(plan: Plan, diagnostics: DiagnosticsFile) -> Self {
+    fn new(plan: Plan, diagnostics: DiagnosticsFile, series: Option<TimeSeries>) -> Self {
         Self {
             film: plan
                 .film
@@ -212,11 +245,12 @@ impl Work {
             probes: ProbeFiles::new(&plan.folder.probes()),
             plan,
             diagnostics,
+            series,
             written: Written::default(),
         }
     }
 
-    fn frame(&mut self, job: &Job) -> Result<(), OutputError> {
+    fn frame(&mut self, job: &Frame) -> Result<(), OutputError> {
         if let Some(snapshot) = &job.snapshot {
             self.files(job.index, snapshot)?;
         }
@@ -228,11 +262,15 @@ impl Work {
 
     fn files(&mut self, index: u64, snapshot: &Snapshot) -> Result<(), OutputError> {
         let folder = &self.plan.folder;
-        if let Some(compression) = self.plan.npz {
-            let path = folder.frames().join(frame_name(index, "npz"));
-            write_frame(&path, snapshot, compression)?;
-            self.written.particles += 1;
+        for &format in &self.plan.formats {
+            let name = frame_name(index, format.info().ending);
+            write_frame(&folder.frames().join(&name), snapshot, format)?;
+            if let Some(series) = self.series.as_mut().filter(|_| format == Format::Vtk) {
+                (series.push(snapshot.time, &format!("frames/{name}")))
+                    .map_err(OutputError::at(series.path()))?;
+            }
         }
+        self.written.particles += u64::from(!self.plan.formats.is_empty());
         let due = |every: u64| index.is_multiple_of(every.max(1));
         if let Some(pictures) = self.plan.pictures.as_ref().filter(|p| due(p.every)) {
             let picture = pictures.renderer.render(snapshot);
@@ -294,7 +332,7 @@ mod tests {
         Plan {
             folder,
             dimension: 2,
-            npz: Some(Compression::Stored),
+            formats: vec![Format::Npz, Format::Vtk],
             pictures: Some(Pictures {
                 renderer: renderer.clone(),
                 every: 1,
@@ -344,6 +382,8 @@ mod tests {
                 )
                 .unwrap();
         }
+        writer.flush().unwrap();
+        assert!(folder.frames().join("000008.npz").exists());
         let written = writer.finish().unwrap();
         let read = super::super::Table::read(&folder.probes().join("P1.csv")).unwrap();
         let twice = |values: &[f64]| values.iter().map(|x| 2.0 * x).collect::<Vec<_>>();
@@ -369,7 +409,9 @@ mod tests {
                 .count(),
             10
         );
-        assert_eq!(fs::read_dir(folder.frames()).unwrap().count(), 9);
+        assert_eq!(fs::read_dir(folder.frames()).unwrap().count(), 18);
+        let series = fs::read_to_string(folder.time_series()).unwrap();
+        assert_eq!(series.matches("<DataSet timestep=").count(), 9);
         assert_eq!(fs::read_dir(folder.images()).unwrap().count(), 9);
         assert!(fs::read(folder.video()).unwrap().starts_with(b"GIF89a"));
     }
@@ -380,13 +422,11 @@ mod tests {
         let folder = RunFolder::at(&root.path().join("run"), false).unwrap();
         let mut writer = Writer::start(plan(folder.clone())).unwrap();
         fs::remove_dir_all(folder.frames()).unwrap();
-        let error = (0..100)
-            .find_map(|index| {
-                writer
-                    .frame(index, snapshot(0.5), Diagnostics::default(), Vec::new())
-                    .err()
-            })
-            .expect("the folder is gone");
+        // The first frame is taken before it is written, so it has no error yet.
+        writer
+            .frame(0, snapshot(0.5), Diagnostics::default(), Vec::new())
+            .unwrap();
+        let error = writer.flush().unwrap_err();
         assert!(error.path.ends_with("frames/000000.npz"), "{error}");
         assert!(!error.usage);
     }

@@ -1812,10 +1812,10 @@ pub(crate) static OUTPUT: Section = Section {
     keys: &[&[
         key(
             "formats",
-            Kind::Words(&["npz", "png", "gif", "none"]),
+            Kind::Words(&["npz", "vtk", "ply", "bgeo", "png", "gif", "none"]),
             "",
             Value("[\"npz\", \"gif\"]"),
-            "Files a run writes: particles by frame, pictures by frame, an animation.",
+            "Files a run writes: particles by frame (`npz`, `vtk`, `ply`, `bgeo`), pictures by frame, an animation.",
         ),
         key(
             "fields",
