@@ -112,13 +112,14 @@ def read_bgeo(path, frame, fields):
         name = data[at + 2 : at + 2 + length].decode()
         at += 2 + length
         size, kind = int.from_bytes(data[at : at + 2], "big"), int.from_bytes(data[at + 2 : at + 6], "big")
-        return at + 6 + 4 * size, (name, {0: ">f4", 1: ">i4", 5: ">f4"}[kind], size)
+        kind = {0: ">f4", 1: ">i4", 5: ">f4"}[kind]
+        return at + 6 + 4 * size, (name, kind) if size == 1 else (name, kind, size)
     for _ in range(counts[3]):
         at, line = attribute(at)
         record.append(line)
     rows = np.frombuffer(data, np.dtype(record), n, at)
     at, whole = attribute(at + rows.nbytes)
-    assert whole == ("time", ">f4", 1)
+    assert whole == ("time", ">f4")
     assert np.frombuffer(data, ">f4", 1, at)[0] == np.float32(frame["time"])
     assert data[at + 4 :] == b"\x00\xff"
     assert set(rows.dtype.names) == {"P"} | {"v" if name == "velocity" else name for name in fields}
