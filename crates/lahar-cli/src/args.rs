@@ -22,6 +22,7 @@ impl Args {
     pub(crate) fn wants_json(&self) -> bool {
         match &self.command {
             Some(Command::Run(run)) => run.json,
+            Some(Command::Resume(resume)) => resume.json,
             Some(Command::List(list)) => list.json,
             Some(Command::Show(show)) => show.json,
             Some(Command::Validate(validate)) => validate.json,
@@ -38,6 +39,8 @@ pub(crate) enum Command {
     View(View),
     /// Run a scene without a window and write what it comes to
     Run(Run),
+    /// Go on with a run that was interrupted, killed or failed, as if it had not been
+    Resume(Resume),
     /// List the built-in scenes
     List(List),
     /// Show what a scene comes to: particles, nodes, memory, sound speed, time step and what limits it
@@ -145,6 +148,34 @@ pub(crate) struct Run {
     /// Check everything and say what would be done, without doing it
     #[arg(long)]
     pub(crate) dry_run: bool,
+
+    /// Print the report as one JSON document on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Options of `resume`.
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct Resume {
+    /// The folder of the run
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
+
+    /// Go on to frame N, beyond the run's own end
+    #[arg(long, value_name = "N", conflicts_with = "until")]
+    pub(crate) frames: Option<u64>,
+
+    /// Go on to this simulated time in seconds, beyond the run's own end
+    #[arg(long, value_name = "T", value_parser = positive)]
+    pub(crate) until: Option<f64>,
+
+    /// Threads to compute with; all of this machine if not given. The bits are the same
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+
+    /// Go on with another instruction set than the run began with; the bits are others then
+    #[arg(long, value_name = "SET", value_parser = isa)]
+    pub(crate) isa: Option<Isa>,
 
     /// Print the report as one JSON document on standard output
     #[arg(long)]

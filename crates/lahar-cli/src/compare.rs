@@ -40,10 +40,9 @@ pub(crate) fn compare(args: &args::Run, comparison: &Comparison) -> Result<ExitC
     }
     let folder = match &args.output {
         Some(path) if args.overwrite => path.clone(),
-        Some(path) => RunFolder::at(path, false)?.path().to_owned(),
+        Some(path) => RunFolder::at(path, false)?.into_plain()?,
         None => RunFolder::numbered(Path::new(""), &format!("{}-compared", plans[0].name()))?
-            .path()
-            .to_owned(),
+            .into_plain()?,
     };
     let pace = film_pace(scene.frame_rate, plans[0].frames);
     let mut runs = Vec::new();
@@ -55,7 +54,7 @@ pub(crate) fn compare(args: &args::Run, comparison: &Comparison) -> Result<ExitC
         let path = folder.join(file_name(value));
         plan.folder = Some(path.clone());
         plan.overwrite = args.overwrite;
-        plan.formats.png = pace.every;
+        plan.outputs.formats.png = pace.every;
         terminal::note(&format!("{title}:"));
         let code = run::run(plan, false)?;
         if code != ExitCode::SUCCESS {

@@ -33,6 +33,17 @@ pub(crate) enum CliError {
         folder: PathBuf,
         /// Whole frames in it.
         frames: u64,
+        /// The newest checkpoint in it.
+        checkpoint: Option<PathBuf>,
+    },
+    /// A run could not be written any more.
+    Broken {
+        /// Why.
+        error: OutputError,
+        /// The folder of the run.
+        folder: PathBuf,
+        /// The newest checkpoint in it.
+        checkpoint: Option<PathBuf>,
     },
     /// Something about this machine.
     Machine(String),
@@ -43,7 +54,9 @@ impl CliError {
         ExitCode::from(match self {
             Self::Scene(_) | Self::Usage(_) => USAGE,
             Self::Output(error) if error.usage => USAGE,
-            Self::Output(_) | Self::Simulation { .. } | Self::Machine(_) => FAILED,
+            Self::Output(_) | Self::Simulation { .. } | Self::Broken { .. } | Self::Machine(_) => {
+                FAILED
+            }
         })
     }
 
@@ -57,8 +70,25 @@ impl CliError {
                 what,
                 folder,
                 frames,
+                checkpoint,
             } => format!(
-                "error: the simulation failed: {what}\n{} holds the {frames} frame(s) before that, run.json and diagnostics.csv; there is no checkpoint",
+                "error: the simulation failed: {what}\n{} holds the {frames} frame(s) before that, run.json and diagnostics.csv; {}",
+                folder.display(),
+                match checkpoint {
+                    Some(path) => format!("the last good checkpoint is {}", path.display()),
+                    None => "there is no checkpoint".to_owned(),
+                }
+            ),
+            Self::Broken {
+                error,
+                folder,
+                checkpoint,
+            } => format!(
+                "error: {error}\n{}; when there is room again, `lahar resume {}` goes on",
+                match checkpoint {
+                    Some(path) => format!("the last good checkpoint is {}", path.display()),
+                    None => "there is no checkpoint yet".to_owned(),
+                },
                 folder.display()
             ),
         }
@@ -81,7 +111,17 @@ impl CliError {
                 what,
                 folder,
                 frames,
-            } => json!({ "error": what, "folder": folder, "frames": frames }),
+                checkpoint,
+            } => {
+                json!({ "error": what, "folder": folder, "frames": frames, "checkpoint": checkpoint })
+            }
+            Self::Broken {
+                error,
+                folder,
+                checkpoint,
+            } => {
+                json!({ "error": error.what, "file": error.path, "folder": folder, "checkpoint": checkpoint })
+            }
         };
         if let (Some(value), Value::Object(extra)) = (value.as_object_mut(), extra) {
             value.extend(extra);

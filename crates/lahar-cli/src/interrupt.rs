@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM: the first asks the run to stop after its frame, the second stops at once.
+//! Ctrl-C and SIGTERM: the first asks the run to keep a checkpoint and stop, the second stops at once.
 
 use std::sync::Once;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -24,7 +24,7 @@ fn asked() {
     if ASKED.fetch_add(1, Ordering::Relaxed) > 0 {
         std::process::exit(i32::from(INTERRUPTED));
     }
-    terminal::note("stopping after this frame; once more to stop at once");
+    terminal::note("stopping; once more to stop at once, without a checkpoint");
 }
 
 /// Whether to stop.

@@ -17,6 +17,8 @@ mod new;
 mod plan;
 mod plot;
 mod progress;
+mod report;
+mod resume;
 mod run;
 mod schema;
 mod show;
@@ -62,6 +64,7 @@ fn execute(args: Args) -> Result<ExitCode, CliError> {
             Some(comparison) => compare::compare(&run, comparison),
             None => run::run(plan::Plan::from_args(&run)?, run.json),
         },
+        Some(Command::Resume(args)) => resume::resume(&args),
         Some(Command::List(list)) => list::list(list.json),
         Some(Command::Show(show)) => show::show(&show),
         Some(Command::New(args)) => new::new(&args.file),

@@ -3,10 +3,13 @@
 use std::path::PathBuf;
 
 use lahar::{Field, Isa, particles};
+use lahar_io::checkpoint::Start;
 use lahar_io::export::{FORMATS, Format};
 use lahar_io::image::{self, Camera, Colouring, Renderer, Scenery, Style};
 use lahar_io::output::{Film, Pictures, RunFolder, film_pace};
 use lahar_io::scene::Scene;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
 
 use crate::args;
 use crate::error::CliError;
@@ -24,8 +27,8 @@ pub(crate) struct Plan {
     pub(crate) threads: usize,
     /// Frames after the one at the start.
     pub(crate) frames: u64,
-    /// Files of a frame.
-    pub(crate) formats: Formats,
+    /// What is written.
+    pub(crate) outputs: Outputs,
     /// The folder asked for; the usual one if none.
     pub(crate) folder: Option<PathBuf>,
     /// Whether a run in it is replaced.
@@ -36,8 +39,17 @@ pub(crate) struct Plan {
     pub(crate) deadline: Option<f64>,
 }
 
+/// What a run writes; the same when it goes on.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Outputs {
+    /// Files of a frame.
+    pub(crate) formats: Formats,
+    /// Frames that the film is paced for.
+    pub(crate) film_frames: u64,
+}
+
 /// What is written of frames.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Formats {
     /// Particles, in the table's order.
     pub(crate) particles: Vec<Format>,
@@ -117,7 +129,10 @@ impl Plan {
             isa: args.scene.isa.unwrap_or_else(Isa::detect),
             threads: args.threads.map_or_else(all_threads, usize::from),
             frames,
-            formats,
+            outputs: Outputs {
+                formats,
+                film_frames: frames,
+            },
             folder: args.output.clone(),
             overwrite: args.overwrite,
             dry_run: args.dry_run,
@@ -134,16 +149,65 @@ impl Plan {
             isa: Isa::detect(),
             threads: all_threads(),
             frames,
-            formats: Formats {
-                particles: Vec::new(),
-                png: (frames / DEMONSTRATION_PICTURES).max(1),
-                gif: true,
+            outputs: Outputs {
+                formats: Formats {
+                    particles: Vec::new(),
+                    png: (frames / DEMONSTRATION_PICTURES).max(1),
+                    gif: true,
+                },
+                film_frames: frames,
             },
             folder: None,
             overwrite: false,
             dry_run: false,
             deadline: Some(deadline),
             scene,
+        })
+    }
+
+    /// What `checkpoints/start.json` keeps of this.
+    pub(crate) fn start(&self, warnings: &[String]) -> Start {
+        Start {
+            lahar: env!("CARGO_PKG_VERSION").to_owned(),
+            scene: self.scene.name.clone(),
+            text: self.scene.text.clone(),
+            set: self.scene.overrides.clone(),
+            files: Vec::new(),
+            isa: self.isa.name().to_owned(),
+            frames: self.frames,
+            outputs: json!(self.outputs),
+            warnings: warnings.to_vec(),
+        }
+    }
+
+    /// The plan of which `start` was kept, on `threads` threads or all, with the instruction set `isa` or the one
+    /// it began with.
+    pub(crate) fn of_start(
+        start: &Start,
+        scene: Scene,
+        threads: Option<u16>,
+        isa: Option<Isa>,
+    ) -> Result<Self, CliError> {
+        let began_with = Isa::ALL.into_iter().find(|isa| isa.name() == start.isa);
+        let Some(isa) = isa.or(began_with.filter(|isa| isa.is_available())) else {
+            return Err(CliError::Usage(format!(
+                "the run was begun with the instruction set {}, which this machine does not have; `--isa portable` goes on with another, and other roundings",
+                start.isa
+            )));
+        };
+        let outputs = Outputs::deserialize(&start.outputs).map_err(|error| {
+            CliError::Usage(format!("what the run writes cannot be read: {error}"))
+        })?;
+        Ok(Self {
+            scene,
+            isa,
+            threads: threads.map_or_else(all_threads, usize::from),
+            frames: start.frames,
+            outputs,
+            folder: None,
+            overwrite: false,
+            dry_run: false,
+            deadline: None,
         })
     }
 
@@ -170,7 +234,7 @@ impl Plan {
     /// The fields that frames are made of.
     pub(crate) fn fields(&self) -> Vec<Field> {
         let chosen = |info: &particles::FieldInfo| {
-            let particles = &self.formats.particles;
+            let particles = &self.outputs.formats.particles;
             let chosen = self
                 .scene
                 .output
@@ -180,8 +244,8 @@ impl Plan {
             let placed = info.field == Field::Position;
             let in_files = !particles.is_empty() && chosen
                 || placed && particles.iter().any(|format| format.needs_positions());
-            let drawn =
-                (self.formats.png > 0 || self.formats.gif) && image::FIELDS.contains(&info.field);
+            let drawn = (self.outputs.formats.png > 0 || self.outputs.formats.gif)
+                && image::FIELDS.contains(&info.field);
             in_files || drawn
         };
         particles::FIELDS
@@ -194,9 +258,9 @@ impl Plan {
     /// Pictures, if wanted.
     pub(crate) fn pictures(&self, scenery: &Scenery) -> Option<Pictures> {
         let [width, height] = self.scene.output.picture_size;
-        (self.formats.png > 0).then(|| Pictures {
+        (self.outputs.formats.png > 0).then(|| Pictures {
             renderer: self.renderer(scenery, width, height),
-            every: self.formats.png,
+            every: self.outputs.formats.png,
         })
     }
 
@@ -206,9 +270,9 @@ impl Plan {
         let film_width = width.min(FILM_WIDTH);
         let film_height =
             (f64::from(height) * f64::from(film_width) / f64::from(width)).round() as u32;
-        self.formats.gif.then(|| Film {
+        self.outputs.formats.gif.then(|| Film {
             renderer: self.renderer(scenery, film_width, film_height),
-            pace: film_pace(self.scene.frame_rate, self.frames),
+            pace: film_pace(self.scene.frame_rate, self.outputs.film_frames),
         })
     }
 

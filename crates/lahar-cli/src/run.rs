@@ -2,23 +2,42 @@
 
 use std::process::ExitCode;
 
-use lahar::{Advance, DtLimit, Failure, Field, Retry, Simulate};
+use lahar::{Advance, Checkpoint, DtLimit, Failure, Field, Retry, Simulate};
+use lahar_io::checkpoint::{Header, Progress as Done, Start, Store};
 use lahar_io::image::Scenery;
 use lahar_io::output::{
     self, OutputError, PhaseSeconds, Record, RunFolder, Status, Writer, Written,
 };
-use serde_json::{Value, json};
 
 use crate::error::{CliError, INTERRUPTED};
 use crate::plan::Plan;
-use crate::progress::{Progress, Standing, duration, with_prefix};
-use crate::{clock, interrupt, show, terminal};
+use crate::progress::{Progress, Standing};
+use crate::{clock, interrupt, report, terminal};
+
+/// What a run that goes on goes on from.
+pub(crate) struct Origin {
+    /// The run's folder.
+    pub(crate) folder: RunFolder,
+    /// What it began with.
+    pub(crate) start: Start,
+    /// A checkpoint; `None`: the beginning.
+    pub(crate) checkpoint: Option<(Header, Checkpoint)>,
+}
 
 /// Runs `plan`; the report is one JSON document if `as_json`.
 pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
     if plan.dry_run {
-        return dry_run(&plan, as_json);
+        return report::dry_run(&plan, as_json);
     }
+    begin(plan, None, as_json)
+}
+
+/// Runs `plan` from its beginning, or goes on with a run of it.
+pub(crate) fn begin(
+    plan: Plan,
+    origin: Option<Origin>,
+    as_json: bool,
+) -> Result<ExitCode, CliError> {
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(plan.threads)
         .thread_name(|index| format!("lahar-{index}"))
@@ -28,18 +47,7 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
         })?;
     interrupt::watch()?;
     let built = pool.install(|| plan.scene.build(plan.isa))?;
-    for warning in &built.warnings {
-        terminal::note(&format!("warning: {warning}"));
-    }
-    let folder = plan.make_folder()?;
     let mut simulation = built.simulation;
-    simulation.set_clock(clock::seconds);
-    let mut record = first_record(&plan, &*simulation, built.warnings);
-    record.write(&folder.record())?;
-    if let Some(what) = announcement(&plan, &record, &folder) {
-        terminal::note(&what);
-    }
-
     let models: Vec<&str> = plan
         .scene
         .materials
@@ -47,34 +55,65 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
         .map(|material| material.model.as_str())
         .collect();
     let scenery = Scenery::of(&*simulation, &models).with_colliders(&plan.scene.colliders);
-    let writer = Writer::start(output::Plan {
-        folder: folder.clone(),
-        dimension: simulation.dimension(),
-        formats: plan.formats.particles.clone(),
-        pictures: plan.pictures(&scenery),
-        film: plan.film(&scenery),
-    });
+    let (folder, start, checkpoint) = match origin {
+        Some(origin) => (origin.folder, origin.start, origin.checkpoint),
+        None => {
+            for warning in &built.warnings {
+                terminal::note(&format!("warning: {warning}"));
+            }
+            let folder = plan.make_folder()?;
+            let mut start = plan.start(&built.warnings);
+            start.write(&plan.scene, &folder.checkpoints())?;
+            (folder, start, None)
+        }
+    };
+    let progress = match checkpoint {
+        Some((header, checkpoint)) => {
+            simulation.resume(checkpoint).map_err(|error| {
+                let folder = folder.path().display();
+                CliError::Machine(format!("{folder}: the checkpoint cannot be used: {error}"))
+            })?;
+            Some(header.progress)
+        }
+        None => None,
+    };
+    simulation.set_clock(clock::seconds);
+    let mut record = first_record(&plan, &*simulation, start.warnings.clone());
+    record.write(&folder.record())?;
+    terminal::note(&report::announcement(
+        &plan,
+        &record,
+        &folder,
+        progress.as_ref(),
+    ));
+
+    let writer = Writer::start(
+        output::Plan {
+            folder: folder.clone(),
+            dimension: simulation.dimension(),
+            formats: plan.outputs.formats.particles.clone(),
+            pictures: plan.pictures(&scenery),
+            film: plan.film(&scenery),
+        },
+        progress.as_ref().map(|progress| &progress.output),
+    );
     let outcome = writer.map_err(Stop::Output).and_then(|writer| {
         pool.install(|| {
-            let mut going = Going {
-                plan: &plan,
-                simulation: &mut *simulation,
-                writer,
-                fields: plan.fields(),
-                startup_seconds: 0.0,
-                output_seconds: 0.0,
-                particle_steps: 0,
-                retries: Vec::new(),
-            };
+            let mut going = Going::new(&plan, &start, &mut *simulation, writer, progress);
             let end = going.frames();
-            record.retries = core::mem::take(&mut going.retries);
-            record.particle_steps = going.particle_steps;
-            record.startup_seconds = going.startup_seconds;
-            record.phase_seconds = going.phase_seconds();
+            let so_far = going.so_far();
+            record.retries = so_far.retries;
+            record.particle_steps = so_far.particle_steps;
+            record.sorts = so_far.sorts;
+            record.startup_seconds = so_far.startup_seconds;
+            record.phase_seconds = so_far.phase_seconds;
+            record.seconds = so_far.seconds;
             // The film is made even if the run failed: it shows how.
             let waited = clock::seconds();
             let written = going.writer.finish();
-            record.phase_seconds.output += clock::seconds() - waited;
+            let waited = clock::seconds() - waited;
+            record.phase_seconds.output += waited;
+            record.seconds += waited;
             match (end, written) {
                 (Err(stop), _) => Err(stop),
                 (Ok(_), Err(error)) => Err(Stop::Output(error)),
@@ -85,16 +124,28 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
 
     finish_record(&mut record, &*simulation, &outcome);
     let recorded = record.write(&folder.record());
+    let newest = || {
+        let all = Store::new(&folder.checkpoints()).all();
+        all.into_iter().next().map(|(_, path)| path)
+    };
     match outcome {
         Err(Stop::Failure { failure, frame }) => Err(CliError::Simulation {
             what: Retry::in_vain(&failure),
             folder: folder.path().to_owned(),
             frames: frame,
+            checkpoint: newest(),
         }),
-        Err(Stop::Output(error)) => Err(error.into()),
+        Err(Stop::Output(error)) => Err(CliError::Broken {
+            error,
+            folder: folder.path().to_owned(),
+            checkpoint: newest(),
+        }),
         Ok((end, written)) => {
             recorded?;
-            report(&plan, &record, &folder, end, written, as_json);
+            if end == End::Done {
+                folder.forget_film_pictures()?;
+            }
+            report::report(&plan, &record, &folder, end, written, as_json);
             Ok(match end {
                 End::Interrupted => ExitCode::from(INTERRUPTED),
                 End::Done | End::Deadline => ExitCode::SUCCESS,
@@ -105,22 +156,32 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
 
 /// Why the frames ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum End {
+pub(crate) enum End {
+    /// All are there.
     Done,
+    /// Ctrl-C.
     Interrupted,
+    /// There was no more time.
     Deadline,
 }
 
 /// What to do about a step that was too long.
 const FIXED_STEP: &str = "; the scene fixes dt, a shorter one would spare this";
 
-/// So many substeps.
-fn take(simulation: &mut dyn Simulate, substeps: u64) -> Result<Advance, Failure> {
+/// So many substeps; fewer if `go_on`, asked before each, says no.
+fn take(
+    simulation: &mut dyn Simulate,
+    substeps: u64,
+    go_on: &mut dyn FnMut() -> bool,
+) -> Result<Advance, Failure> {
     let mut whole = Advance {
         dt_min: f64::INFINITY,
         ..Advance::default()
     };
     for _ in 0..substeps {
+        if !go_on() {
+            break;
+        }
         let one = simulation.substep()?;
         whole.substeps += one.substeps;
         if one.dt_min < whole.dt_min {
@@ -143,31 +204,76 @@ enum Stop {
 /// A run while it goes.
 struct Going<'a> {
     plan: &'a Plan,
+    start: &'a Start,
     simulation: &'a mut dyn Simulate,
     writer: Writer,
     fields: Vec<Field>,
-    /// Seconds before the first substep, without output.
+    /// What was done before this program began with it.
+    before: Done,
+    /// Seconds before the first substep, without output; of this program.
     startup_seconds: f64,
+    /// Seconds of output; of this program.
     output_seconds: f64,
     particle_steps: u64,
     retries: Vec<String>,
+    /// How many of them there were when the last frame was written.
+    settled_retries: usize,
+    /// The last frame that was written; none yet at the very start.
+    frame: Option<u64>,
+    /// The frame of the last checkpoint, and when it was taken.
+    kept: (Option<u64>, f64),
 }
 
-impl Going<'_> {
+impl<'a> Going<'a> {
+    fn new(
+        plan: &'a Plan,
+        start: &'a Start,
+        simulation: &'a mut dyn Simulate,
+        writer: Writer,
+        progress: Option<Done>,
+    ) -> Self {
+        let frame = progress.as_ref().map(|progress| progress.frame);
+        let before = progress.unwrap_or_default();
+        Self {
+            plan,
+            start,
+            simulation,
+            writer,
+            fields: plan.fields(),
+            startup_seconds: 0.0,
+            output_seconds: 0.0,
+            particle_steps: before.particle_steps,
+            retries: before.retries.clone(),
+            settled_retries: before.retries.len(),
+            frame,
+            kept: (frame, clock::seconds()),
+            before,
+        }
+    }
+
     fn frames(&mut self) -> Result<End, Stop> {
         let mut progress = Progress::new(self.plan.frames);
         let end = self.frames_with(&mut progress);
         progress.finish();
+        // Whatever it was that ended the frames before their time, the run can go on from here: a frame that
+        // failed or was given up is as if it had not begun.
+        let more = !matches!(end, Ok(End::Done)) || self.is_kept();
+        if more && !matches!(end, Err(Stop::Output(_))) {
+            self.keep().map_err(Stop::Output)?;
+        }
         end
     }
 
     fn frames_with(&mut self, progress: &mut Progress) -> Result<End, Stop> {
-        self.write(0).map_err(Stop::Output)?;
-        self.startup_seconds = clock::seconds() - self.output_seconds;
-        for frame in 1..=self.plan.frames {
-            if interrupt::asked_to_stop() {
-                return Ok(End::Interrupted);
+        let first = match self.frame {
+            Some(frame) => frame + 1,
+            None => {
+                self.write(0).map_err(Stop::Output)?;
+                1
             }
+        };
+        self.startup_seconds = clock::seconds() - self.output_seconds;
+        for frame in first..=self.plan.frames {
             if self
                 .plan
                 .deadline
@@ -182,12 +288,21 @@ impl Going<'_> {
                     failure: Box::new(failure),
                     frame,
                 })?;
+            if interrupt::asked_to_stop() {
+                self.simulation.give_up_frame();
+                self.retries.truncate(self.settled_retries);
+                return Ok(End::Interrupted);
+            }
             self.particle_steps += particles * advance.substeps;
             self.write(frame).map_err(Stop::Output)?;
+            if self.is_due(frame) {
+                self.keep().map_err(Stop::Output)?;
+            }
+            let steps = self.particle_steps - self.before.particle_steps;
             progress.update(&Standing {
                 frame,
                 time: self.simulation.time(),
-                rate: self.particle_steps as f64 / self.solving_seconds().max(1e-9),
+                rate: steps as f64 / self.solving_seconds().max(1e-9),
                 seconds: clock::seconds(),
                 advance,
             });
@@ -195,28 +310,21 @@ impl Going<'_> {
         Ok(End::Done)
     }
 
-    /// Seconds since the first substep, without output.
+    /// Seconds of this program since the first substep, without output.
     fn solving_seconds(&self) -> f64 {
         clock::seconds() - self.startup_seconds - self.output_seconds
-    }
-
-    fn phase_seconds(&self) -> PhaseSeconds {
-        PhaseSeconds::new(
-            self.simulation.phase_times(),
-            self.solving_seconds(),
-            self.output_seconds,
-        )
     }
 
     /// A frame, with shorter time steps if it fails.
     fn advance(&mut self, number: u64, progress: &Progress) -> Result<Advance, Failure> {
         let scene = &self.plan.scene;
         let retries = &mut self.retries;
+        let mut go_on = || !interrupt::asked_to_stop();
         lahar::frame(
             &mut *self.simulation,
             |simulation| match scene.substeps_per_frame {
-                Some(substeps) => take(simulation, substeps),
-                None => simulation.advance_to(number as f64 / scene.frame_rate),
+                Some(substeps) => take(simulation, substeps, &mut go_on),
+                None => simulation.advance_while(number as f64 / scene.frame_rate, &mut go_on),
             },
             |retry| {
                 let fixed = retry.failure.dt_limit == DtLimit::Fixed;
@@ -239,7 +347,63 @@ impl Going<'_> {
         // Diagnostics sort if the next substep would have: that is no output.
         let sorting = self.simulation.phase_times().sort - sorted;
         self.output_seconds += clock::seconds() - before - sorting;
+        self.frame = Some(frame);
+        self.settled_retries = self.retries.len();
         result
+    }
+
+    /// Whether this run keeps checkpoints by frames, or has kept one.
+    fn is_kept(&self) -> bool {
+        self.plan.scene.output.checkpoint_every > 0 || self.kept.0.is_some()
+    }
+
+    /// Whether it is time for a checkpoint.
+    fn is_due(&self, frame: u64) -> bool {
+        let output = &self.plan.scene.output;
+        let by_frames =
+            output.checkpoint_every > 0 && frame.is_multiple_of(output.checkpoint_every);
+        let minutes = (clock::seconds() - self.kept.1) / 60.0;
+        by_frames || output.checkpoint_minutes > 0.0 && minutes >= output.checkpoint_minutes
+    }
+
+    /// Hands a checkpoint after the last frame to the writing thread.
+    fn keep(&mut self) -> Result<(), OutputError> {
+        if self.frame.is_none() || self.kept.0 == self.frame {
+            return Ok(());
+        }
+        let before = clock::seconds();
+        let header = Header {
+            lahar: self.start.lahar.clone(),
+            dimension: self.simulation.dimension(),
+            precision: self.simulation.precision().to_owned(),
+            isa: self.simulation.isa().name().to_owned(),
+            start: self.start.sum(),
+            progress: Done {
+                retries: self.retries[..self.settled_retries].to_vec(),
+                ..self.so_far()
+            },
+        };
+        let result = self.writer.checkpoint(header, self.simulation.checkpoint());
+        self.output_seconds += clock::seconds() - before;
+        self.kept = (self.frame, clock::seconds());
+        result
+    }
+
+    /// How far the run is, from its beginning.
+    fn so_far(&self) -> Done {
+        let phases = self.simulation.phase_times();
+        let before = &self.before;
+        Done {
+            frame: self.frame.unwrap_or_default(),
+            particle_steps: self.particle_steps,
+            sorts: before.sorts + phases.sorts,
+            retries: self.retries.clone(),
+            startup_seconds: before.startup_seconds + self.startup_seconds,
+            seconds: before.seconds + clock::seconds(),
+            phase_seconds: before.phase_seconds
+                + PhaseSeconds::new(phases, self.solving_seconds(), self.output_seconds),
+            output: Default::default(), // the writing thread knows
+        }
     }
 }
 
@@ -261,7 +425,6 @@ fn first_record(plan: &Plan, simulation: &dyn Simulate, warnings: Vec<String>) -
         particles: simulation.particle_count() as u64,
         particle_steps: 0,
         particle_steps_per_second: 0.0,
-        startup_seconds: 0.0,
         seconds: 0.0,
         phase_seconds: PhaseSeconds::default(),
         sorts: 0,
@@ -276,7 +439,7 @@ fn finish_record(
     outcome: &Result<(End, Written), Stop>,
 ) {
     record.status = match outcome {
-        Ok((End::Interrupted, _)) => Status::Interrupted,
+        Ok((End::Interrupted | End::Deadline, _)) => Status::Interrupted,
         Ok(_) => Status::Done,
         Err(_) => Status::Failed,
     };
@@ -291,128 +454,6 @@ fn finish_record(
     record.time = simulation.time();
     record.substeps = simulation.substeps();
     record.particles = simulation.particle_count() as u64;
-    record.sorts = simulation.phase_times().sorts;
-    record.seconds = clock::seconds();
     record.particle_steps_per_second =
         record.particle_steps as f64 / record.phase_seconds.solving().max(1e-9);
-}
-
-fn announcement(plan: &Plan, record: &Record, folder: &RunFolder) -> Option<String> {
-    Some(format!(
-        "{}: {} particles, {} frames of {:.4} s, {} on {} thread(s), into {}",
-        plan.scene.title,
-        record.particles,
-        plan.frames,
-        1.0 / plan.scene.frame_rate,
-        record.isa,
-        plan.threads,
-        folder.path().display(),
-    ))
-}
-
-/// What a run has come to.
-fn report(
-    plan: &Plan,
-    record: &Record,
-    folder: &RunFolder,
-    end: End,
-    written: Written,
-    as_json: bool,
-) {
-    if as_json {
-        let mut value = serde_json::to_value(record).unwrap_or_else(|_| json!({}));
-        if let Value::Object(map) = &mut value {
-            // The scene is in run.json; here it would bury the rest.
-            map.remove("scene");
-            map.insert("folder".to_owned(), json!(folder.path()));
-            map.insert("formats".to_owned(), json!(plan.formats.names()));
-            map.insert("images".to_owned(), json!(written.images));
-            map.insert(
-                "video".to_owned(),
-                json!(written.film.then(|| folder.video())),
-            );
-        }
-        terminal::print_json(&value);
-    } else {
-        terminal::print(&format!(
-            "{} frames to t = {:.4} s, {} substeps in {} ({} particle-steps/s without output)\n",
-            record.frames,
-            record.time,
-            record.substeps,
-            duration(record.seconds),
-            with_prefix(record.particle_steps_per_second),
-        ));
-        for (there, what) in [
-            (written.film, folder.video().display().to_string()),
-            (
-                written.images > 0,
-                format!(
-                    "{}/ ({} pictures)",
-                    folder.images().display(),
-                    written.images
-                ),
-            ),
-            (
-                written.particles > 0,
-                format!(
-                    "{}/ ({} frames)",
-                    folder.frames().display(),
-                    written.particles
-                ),
-            ),
-            (true, folder.diagnostics().display().to_string()),
-            (
-                folder.probes().is_dir(),
-                format!("{}/", folder.probes().display()),
-            ),
-            (true, folder.record().display().to_string()),
-        ] {
-            if there {
-                terminal::print(&format!("  {what}\n"));
-            }
-        }
-    }
-    match end {
-        End::Done => {}
-        End::Deadline => terminal::note(&format!(
-            "stopped at t = {:.3} s of {:.3} s to end within a minute; `lahar run {}` goes to the end",
-            record.time, plan.scene.duration, plan.scene.name
-        )),
-        End::Interrupted => terminal::note(&format!(
-            "interrupted after {} of {} frames; what is in {} is whole. There is no checkpoint: `lahar run {} -o {} --overwrite` starts anew",
-            record.frames,
-            plan.frames + 1,
-            folder.path().display(),
-            plan.scene.name,
-            folder.path().display(),
-        )),
-    }
-}
-
-fn dry_run(plan: &Plan, as_json: bool) -> Result<ExitCode, CliError> {
-    let mut value = show::describe(&plan.scene, plan.isa)?;
-    let folder = match &plan.folder {
-        Some(path) => path.display().to_string(),
-        None => format!("out/{}", plan.name()),
-    };
-    if let Value::Object(map) = &mut value {
-        map.insert("status".to_owned(), json!("dry-run"));
-        map.insert("frames".to_owned(), json!(plan.frames));
-        map.insert("threads".to_owned(), json!(plan.threads));
-        map.insert("formats".to_owned(), json!(plan.formats.names()));
-        map.insert("folder".to_owned(), json!(folder));
-    }
-    if as_json {
-        terminal::print_json(&value);
-    } else {
-        terminal::print(&show::text(&value));
-        terminal::print(&format!(
-            "would write {} and {} more frames ({}) into {folder} on {} thread(s)\n",
-            "frame 0",
-            plan.frames,
-            plan.formats.names().join(", "),
-            plan.threads,
-        ));
-    }
-    Ok(ExitCode::SUCCESS)
 }

@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod builtin;
+pub mod checkpoint;
 pub mod error;
 mod even;
 pub mod export;

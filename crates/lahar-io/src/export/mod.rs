@@ -15,6 +15,7 @@ mod rows;
 mod series;
 mod vtp;
 
+use serde::{Deserialize, Serialize};
 use std::io::{self, Seek, Write};
 
 use lahar::particles::{FIELDS, Shape};
@@ -25,7 +26,8 @@ use crate::npz::{Compression, NpzWriter};
 pub(crate) use series::TimeSeries;
 
 /// A format of particles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Format {
     /// NumPy's archive of arrays.
     Npz,

@@ -5,6 +5,8 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use crate::output::{Length, OutputError};
+
 const HEAD: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
 const TAIL: &str = "</Collection>\n</VTKFile>\n";
 
@@ -43,6 +45,13 @@ impl TimeSeries {
     /// Where it is.
     pub(crate) fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// How it stands without the end tags, on the disk when this returns; `run` is the run's folder.
+    pub(crate) fn settle(&self, run: &Path) -> Result<Length, OutputError> {
+        let at = OutputError::at(&self.path);
+        self.file.sync_data().map_err(&at)?;
+        Length::of(run, &self.path, self.end).map_err(&at)
     }
 
     /// Adds a file, named from the list's folder, of a moment \[s\].

@@ -65,16 +65,54 @@ impl Film {
                 "pictures of a film have one size, below 65536",
             ));
         }
-        for pixel in picture.rgb.chunks_exact(3) {
+        self.count(&picture.rgb);
+        let mut packer = ZlibEncoder::new(Vec::new(), Compression::fast());
+        packer.write_all(&picture.rgb)?;
+        self.frames.push(packer.finish()?);
+        Ok(())
+    }
+
+    fn count(&mut self, rgb: &[u8]) {
+        for pixel in rgb.chunks_exact(3) {
             let (count, sum) = &mut self.counts[bin([pixel[0], pixel[1], pixel[2]])];
             *count += 1;
             for (sum, &channel) in sum.iter_mut().zip(pixel) {
                 *sum += u64::from(channel);
             }
         }
-        let mut packer = ZlibEncoder::new(Vec::new(), Compression::fast());
-        packer.write_all(&picture.rgb)?;
-        self.frames.push(packer.finish()?);
+    }
+
+    /// The last picture as [`Film::unpack`] takes it: width, height and length as `u32`, and its packed pixels.
+    pub(crate) fn last_packed(&self) -> Vec<u8> {
+        let (Some((width, height)), Some(packed)) = (self.size, self.frames.last()) else {
+            return Vec::new();
+        };
+        let head = [width, height, packed.len() as u32].map(u32::to_le_bytes);
+        [head.as_flattened(), packed].concat()
+    }
+
+    /// Adds the pictures that [`Film::last_packed`] has given, one after the other, as if they were pushed again.
+    pub(crate) fn unpack(&mut self, mut pictures: &[u8]) -> io::Result<()> {
+        let wrong = || io::Error::new(io::ErrorKind::InvalidData, "it holds no pictures");
+        while !pictures.is_empty() {
+            let (head, rest) = pictures.split_at_checked(12).ok_or_else(wrong)?;
+            let [width, height, length] =
+                [0, 4, 8].map(|at| u32::from_le_bytes([0, 1, 2, 3].map(|i| head[at + i])));
+            let (packed, rest) = rest.split_at_checked(length as usize).ok_or_else(wrong)?;
+            let size = 3 * u64::from(width) * u64::from(height);
+            let mut rgb = Vec::new();
+            ZlibDecoder::new(packed)
+                .take(size + 1)
+                .read_to_end(&mut rgb)?;
+            if rgb.len() as u64 != size
+                || *self.size.get_or_insert((width, height)) != (width, height)
+            {
+                return Err(wrong());
+            }
+            self.count(&rgb);
+            self.frames.push(packed.to_vec());
+            pictures = rest;
+        }
         Ok(())
     }
 

@@ -1,21 +1,19 @@
 //! `diagnostics.csv`: a row a frame, nothing that depends on the clock.
 
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use lahar::Diagnostics;
 
 use super::OutputError;
+use super::growing::{Growing, Length};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The growing file. Every row is handed to the system at once.
 #[derive(Debug)]
 pub struct DiagnosticsFile {
-    path: PathBuf,
-    file: File,
+    file: Growing,
     dimension: usize,
 }
 
@@ -25,14 +23,20 @@ impl DiagnosticsFile {
     /// # Errors
     /// If it cannot be written.
     pub fn create(path: &Path, dimension: usize) -> Result<Self, OutputError> {
-        let file = File::create(path).map_err(OutputError::at(path))?;
-        let mut this = Self {
-            path: path.to_owned(),
-            file,
-            dimension,
-        };
-        this.line(&header(dimension))?;
-        Ok(this)
+        Self::open(path, dimension, None)
+    }
+
+    /// A new file, or one cut back to what it was.
+    pub(super) fn open(
+        path: &Path,
+        dimension: usize,
+        was: Option<&Length>,
+    ) -> Result<Self, OutputError> {
+        let mut file = Growing::open(path, was)?;
+        if was.is_none() {
+            file.add(header(dimension).as_bytes())?;
+        }
+        Ok(Self { file, dimension })
     }
 
     /// Adds a row.
@@ -40,13 +44,11 @@ impl DiagnosticsFile {
     /// # Errors
     /// If it cannot be written.
     pub fn push(&mut self, diagnostics: &Diagnostics) -> Result<(), OutputError> {
-        self.line(&row(diagnostics, self.dimension))
+        self.file.add(row(diagnostics, self.dimension).as_bytes())
     }
 
-    fn line(&mut self, line: &str) -> Result<(), OutputError> {
-        self.file
-            .write_all(line.as_bytes())
-            .map_err(OutputError::at(&self.path))
+    pub(super) fn file(&self) -> &Growing {
+        &self.file
     }
 }
 

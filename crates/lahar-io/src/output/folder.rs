@@ -1,10 +1,56 @@
 //! The folder of a run: where it goes, and that nobody else's files are touched.
 
+use std::ffi::OsString;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use super::OutputError;
+use super::{OutputError, PARTIAL};
+use crate::checkpoint::{Lock, Start};
+
+/// Whether a run has begun there.
+fn is_run(path: &Path) -> bool {
+    path.join("run.json").exists() || Start::is_in(&path.join(CHECKPOINTS))
+}
+
+/// Whether there is nothing in a folder, or only what a run leaves that was stopped before it began.
+fn is_free(path: &Path) -> Result<bool, OutputError> {
+    let names = |path: &Path| -> Result<Vec<OsString>, OutputError> {
+        let entries = fs::read_dir(path).map_err(OutputError::at(path))?;
+        let names = entries.map(|entry| entry.map(|entry| entry.file_name()));
+        names
+            .collect::<Result<_, _>>()
+            .map_err(OutputError::at(path))
+    };
+    let checkpoints = path.join(CHECKPOINTS);
+    Ok(match names(path)?.as_slice() {
+        [] => true,
+        [only] if only == CHECKPOINTS && checkpoints.is_dir() => names(&checkpoints)?
+            .iter()
+            .all(|name| name == LOCK || name == "files" || name == "start.json.partial"),
+        _ => false,
+    })
+}
+
+/// A file or a folder with all in it, if it is there; the lock stays.
+fn remove(path: &Path) -> Result<(), OutputError> {
+    let removed = match path.is_dir() {
+        true if path.ends_with(CHECKPOINTS) => {
+            let entries = fs::read_dir(path).map_err(OutputError::at(path))?;
+            let others = entries.flatten().filter(|entry| entry.file_name() != LOCK);
+            return others
+                .map(|entry| entry.path())
+                .try_for_each(|path| remove(&path));
+        }
+        true => fs::remove_dir_all(path),
+        false => fs::remove_file(path),
+    };
+    match removed {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(OutputError::at(path)(error)),
+        _ => Ok(()),
+    }
+}
 
 /// The files and folders that a run writes, and that `--overwrite` removes.
 const OWN: [&str; 8] = [
@@ -18,11 +64,15 @@ const OWN: [&str; 8] = [
     "checkpoints",
 ];
 
-/// A folder that is this run's alone.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A folder that is this run's alone, as long as this or a clone of it is there.
+#[derive(Clone, Debug)]
 pub struct RunFolder {
     path: PathBuf,
+    _lock: Arc<Lock>,
 }
+
+const CHECKPOINTS: &str = "checkpoints";
+const LOCK: &str = "lock";
 
 impl RunFolder {
     /// The usual place: `out/NAME` under `parent`, or `out/NAME-2` and so on, the first that is not taken.
@@ -40,7 +90,7 @@ impl RunFolder {
                 format!("{name}-{number}")
             });
             match fs::create_dir(&path) {
-                Ok(()) => return Ok(Self { path }),
+                Ok(()) => return Self::locked(&path),
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => number += 1,
                 Err(error) => return Err(OutputError::at(&path)(error)),
             }
@@ -53,44 +103,87 @@ impl RunFolder {
     /// # Errors
     /// If the folder is taken or cannot be made.
     pub fn at(path: &Path, overwrite: bool) -> Result<Self, OutputError> {
-        let folder = Self {
-            path: path.to_owned(),
-        };
-        if path.join("run.json").exists() {
-            if !overwrite {
-                return Err(OutputError::usage(
-                    path,
-                    "there is a run in this folder already; replace it with `--overwrite`, or choose another folder (`lahar resume`, to go on with a run, is not there yet)",
-                ));
-            }
-            for own in OWN {
-                let own = path.join(own);
-                let removed = if own.is_dir() {
-                    fs::remove_dir_all(&own)
-                } else {
-                    fs::remove_file(&own)
-                };
-                match removed {
-                    Err(error) if error.kind() != ErrorKind::NotFound => {
-                        return Err(OutputError::at(&own)(error));
-                    }
-                    _ => {}
-                }
-            }
-            return Ok(folder);
-        }
         if path.is_file() {
             return Err(OutputError::usage(path, "is a file, not a folder"));
         }
+        let is_run = is_run(path);
+        if is_run && !overwrite {
+            return Err(OutputError::usage(
+                path,
+                format!(
+                    "there is a run in this folder already; `lahar resume {}` goes on with it, `--overwrite` replaces it, or choose another folder",
+                    path.display()
+                ),
+            ));
+        }
         fs::create_dir_all(path).map_err(OutputError::at(path))?;
-        let mut entries = fs::read_dir(path).map_err(OutputError::at(path))?;
-        if entries.next().is_some() {
+        if !is_run && !is_free(path)? {
             return Err(OutputError::usage(
                 path,
                 "this folder holds something that is not a run; choose an empty or a new one",
             ));
         }
+        let folder = Self::locked(path)?;
+        if is_run {
+            // run.json last: what is left of it is a run till then, which can be replaced again.
+            for own in OWN.iter().rev() {
+                remove(&path.join(own))?;
+            }
+        }
         Ok(folder)
+    }
+
+    /// A run that goes on. What was left half written is removed.
+    ///
+    /// # Errors
+    /// There is no run, or another program is at it.
+    pub fn of_run(path: &Path) -> Result<Self, OutputError> {
+        if !is_run(path) {
+            let what = match path.is_dir() {
+                true => {
+                    "there is no run in this folder, or it was stopped before anything was kept; `lahar run` starts one"
+                }
+                false => "there is no such folder",
+            };
+            return Err(OutputError::usage(path, what));
+        }
+        let folder = Self::locked(path)?;
+        let files = folder.checkpoints().join("files");
+        for folder in [
+            path,
+            &folder.frames(),
+            &folder.images(),
+            &folder.checkpoints(),
+            &files,
+        ] {
+            for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+                let path = entry.path();
+                if path.extension().is_some_and(|ending| ending == PARTIAL) {
+                    fs::remove_file(&path).map_err(OutputError::at(&path))?;
+                }
+            }
+        }
+        Ok(folder)
+    }
+
+    /// The folder, with its lock.
+    fn locked(path: &Path) -> Result<Self, OutputError> {
+        let checkpoints = path.join(CHECKPOINTS);
+        fs::create_dir_all(&checkpoints).map_err(OutputError::at(&checkpoints))?;
+        Ok(Self {
+            path: path.to_owned(),
+            _lock: Arc::new(Lock::take(&checkpoints.join(LOCK), path)?),
+        })
+    }
+
+    /// The folder alone, for something that is not a run.
+    ///
+    /// # Errors
+    /// If the lock cannot be removed.
+    pub fn into_plain(self) -> Result<PathBuf, OutputError> {
+        let checkpoints = self.checkpoints();
+        fs::remove_dir_all(&checkpoints).map_err(OutputError::at(&checkpoints))?;
+        Ok(self.path)
     }
 
     /// Where it is.
@@ -121,6 +214,24 @@ impl RunFolder {
     /// `probes/` in it.
     pub fn probes(&self) -> PathBuf {
         self.path.join("probes")
+    }
+
+    /// `checkpoints/` in it.
+    pub fn checkpoints(&self) -> PathBuf {
+        self.path.join(CHECKPOINTS)
+    }
+
+    /// `checkpoints/film` in it: the pictures of the film that is being made.
+    pub fn film_pictures(&self) -> PathBuf {
+        self.checkpoints().join("film")
+    }
+
+    /// Removes [`RunFolder::film_pictures`]: the film is made.
+    ///
+    /// # Errors
+    /// If that fails.
+    pub fn forget_film_pictures(&self) -> Result<(), OutputError> {
+        remove(&self.film_pictures())
     }
 
     /// `images/` in it.

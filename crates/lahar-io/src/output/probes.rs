@@ -1,19 +1,19 @@
 //! `probes/NAME.csv`: what probes have read, a row a reading.
 
 use std::fmt::Write as _;
-use std::fs::{self, File};
-use std::io::Write as _;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use lahar::ProbeSamples;
 
 use super::OutputError;
+use super::growing::{Growing, Length};
 
 /// The growing files, one a probe, made when the first readings come.
 #[derive(Debug)]
 pub(super) struct ProbeFiles {
     folder: PathBuf,
-    files: Vec<(PathBuf, File)>,
+    files: Vec<Growing>,
 }
 
 impl ProbeFiles {
@@ -24,23 +24,34 @@ impl ProbeFiles {
         }
     }
 
+    /// Those of the run in `run`, cut back to what they were.
+    pub(super) fn resume(folder: &Path, run: &Path, were: &[Length]) -> Result<Self, OutputError> {
+        let open = |was: &Length| Growing::open(&run.join(&was.file), Some(was));
+        Ok(Self {
+            folder: folder.to_owned(),
+            files: were.iter().map(open).collect::<Result<_, _>>()?,
+        })
+    }
+
     /// Adds readings; always of the same probes.
     pub(super) fn push(&mut self, probes: &[ProbeSamples]) -> Result<(), OutputError> {
         if self.files.is_empty() && !probes.is_empty() {
             fs::create_dir_all(&self.folder).map_err(OutputError::at(&self.folder))?;
             for probe in probes {
                 let path = self.folder.join(&probe.name).with_extension("csv");
-                let mut file = File::create(&path).map_err(OutputError::at(&path))?;
-                file.write_all(format!("time,{}\n", probe.columns.join(",")).as_bytes())
-                    .map_err(OutputError::at(&path))?;
-                self.files.push((path, file));
+                let mut file = Growing::open(&path, None)?;
+                file.add(format!("time,{}\n", probe.columns.join(",")).as_bytes())?;
+                self.files.push(file);
             }
         }
-        for ((path, file), probe) in self.files.iter_mut().zip(probes) {
-            file.write_all(rows(probe).as_bytes())
-                .map_err(OutputError::at(path))?;
+        for (file, probe) in self.files.iter_mut().zip(probes) {
+            file.add(rows(probe).as_bytes())?;
         }
         Ok(())
+    }
+
+    pub(super) fn files(&self) -> &[Growing] {
+        &self.files
     }
 }
 

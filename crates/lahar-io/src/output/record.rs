@@ -72,6 +72,21 @@ impl PhaseSeconds {
     }
 }
 
+impl core::ops::Add for PhaseSeconds {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            sort: self.sort + other.sort,
+            volume: self.volume + other.volume,
+            scatter: self.scatter + other.scatter,
+            grid: self.grid + other.grid,
+            gather: self.gather + other.gather,
+            other: self.other + other.other,
+            output: self.output + other.output,
+        }
+    }
+}
+
 /// The contents of `run.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {

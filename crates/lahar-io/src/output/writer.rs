@@ -1,13 +1,20 @@
 //! The thread that writes, so that the solver need not wait: a few frames may be under way, then it does.
 
-use std::fs;
+use std::fs::{self, File};
+use std::path::Path;
 use std::sync::mpsc::{Sender, SyncSender, channel, sync_channel};
 use std::thread::{Builder, JoinHandle};
 
-use lahar::{Diagnostics, ProbeSamples, Snapshot};
+use lahar::{Checkpoint, Diagnostics, ProbeSamples, Snapshot};
+use serde::{Deserialize, Serialize};
 
+use super::growing::Growing;
 use super::probes::ProbeFiles;
-use super::{DiagnosticsFile, OutputError, RunFolder, frame_name, write_frame, write_whole};
+use super::{
+    DiagnosticsFile, OutputError, OutputState, RunFolder, frame_name, sync_folder, write_frame,
+    write_whole,
+};
+use crate::checkpoint::{Header, Store};
 use crate::export::{Format, TimeSeries};
 use crate::image::{self, Renderer};
 
@@ -78,7 +85,7 @@ pub fn film_pace(frame_rate: f64, frames: u64) -> Pace {
 }
 
 /// What a writer has written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Written {
     /// Frames, files of particles and pictures or not.
     pub frames: u64,
@@ -92,6 +99,7 @@ pub struct Written {
 
 enum Job {
     Frame(Box<Frame>),
+    Checkpoint(Box<(Header, Checkpoint)>),
     /// To be answered when everything before it is written.
     Barrier(Sender<()>),
 }
@@ -110,13 +118,13 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Makes the folders and files and starts the thread.
+    /// Makes the folders and files and starts the thread. A run that goes on from a checkpoint gives what that
+    /// says of its files, which are cut back to it.
     ///
     /// # Errors
     /// If something cannot be made.
-    pub fn start(plan: Plan) -> Result<Self, OutputError> {
+    pub fn start(plan: Plan, from: Option<&OutputState>) -> Result<Self, OutputError> {
         let folder = &plan.folder;
-        let diagnostics = DiagnosticsFile::create(&folder.diagnostics(), plan.dimension)?;
         for (wanted, path) in [
             (!plan.formats.is_empty(), folder.frames()),
             (plan.pictures.is_some(), folder.images()),
@@ -125,20 +133,17 @@ impl Writer {
                 fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
             }
         }
-        let series = folder.time_series();
-        let series = match plan.formats.contains(&Format::Vtk) {
-            true => Some(TimeSeries::start(&series, 0).map_err(OutputError::at(&series))?),
-            false => None,
-        };
+        let work = Work::new(plan, from)?;
         let (jobs, queue) = sync_channel::<Job>(UNDER_WAY - 1);
-        let path = folder.path().to_owned();
+        let path = work.plan.folder.path().to_owned();
         let thread = Builder::new()
             .name("output".to_owned())
             .spawn(move || {
-                let mut work = Work::new(plan, diagnostics, series);
+                let mut work = work;
                 for job in queue {
                     match job {
                         Job::Frame(frame) => work.frame(&frame)?,
+                        Job::Checkpoint(checkpoint) => work.checkpoint(*checkpoint)?,
                         // Who asked may have gone.
                         Job::Barrier(done) => drop(done.send(())),
                     }
@@ -170,6 +175,19 @@ impl Writer {
             diagnostics,
             probes,
         })))
+    }
+
+    /// Hands over a checkpoint. It is written when all before it is on the disk; what it says of the run's files is
+    /// filled in then.
+    ///
+    /// # Errors
+    /// What went wrong before.
+    pub fn checkpoint(
+        &mut self,
+        header: Header,
+        checkpoint: Checkpoint,
+    ) -> Result<(), OutputError> {
+        self.hand_over(Job::Checkpoint(Box::new((header, checkpoint))))
     }
 
     /// Waits until all frames handed over are written.
@@ -231,23 +249,114 @@ struct Work {
     diagnostics: DiagnosticsFile,
     probes: ProbeFiles,
     series: Option<TimeSeries>,
-    film: Option<image::Film>,
+    film: Option<(image::Film, Growing)>,
     written: Written,
+    /// Files of frames, from the run's folder, and their lengths.
+    files: Vec<(String, u64)>,
+    /// How many of them are known to be on the disk.
+    settled: usize,
 }
 
 impl Work {
-    fn new(plan: Plan, diagnostics: DiagnosticsFile, series: Option<TimeSeries>) -> Self {
-        Self {
-            film: plan
+    fn new(plan: Plan, from: Option<&OutputState>) -> Result<Self, OutputError> {
+        let folder = &plan.folder;
+        let written = from.map_or_else(Written::default, |state| state.written);
+        let path = folder.time_series();
+        let series = match plan.formats.contains(&Format::Vtk) {
+            true => Some(
+                TimeSeries::start(&path, written.particles as usize)
+                    .map_err(OutputError::at(&path))?,
+            ),
+            false => None,
+        };
+        let film = match &plan.film {
+            Some(film) => {
+                let mut film = image::Film::new(film.pace.rate);
+                let path = folder.film_pictures();
+                let was = from.and_then(|state| state.film.as_ref());
+                let file = Growing::open(&path, was)?;
+                fs::read(&path)
+                    .and_then(|pictures| film.unpack(&pictures))
+                    .map_err(OutputError::at(&path))?;
+                Some((film, file))
+            }
+            None => None,
+        };
+        let was = from.and_then(|state| state.diagnostics.as_ref());
+        Ok(Self {
+            diagnostics: DiagnosticsFile::open(&folder.diagnostics(), plan.dimension, was)?,
+            probes: match from {
+                Some(state) => ProbeFiles::resume(&folder.probes(), folder.path(), &state.probes)?,
+                None => ProbeFiles::new(&folder.probes()),
+            },
+            series,
+            film,
+            written,
+            files: from.map_or_else(Vec::new, |state| state.files.clone()),
+            settled: from.map_or(0, |state| state.files.len()),
+            plan,
+        })
+    }
+
+    fn checkpoint(
+        &mut self,
+        (mut header, checkpoint): (Header, Checkpoint),
+    ) -> Result<(), OutputError> {
+        header.progress.output = self.settle()?;
+        let store = Store::new(&self.plan.folder.checkpoints());
+        store.add(&header, &checkpoint).map(|_| ())
+    }
+
+    /// How the files stand, all of them on the disk.
+    fn settle(&mut self) -> Result<OutputState, OutputError> {
+        let folder = &self.plan.folder;
+        let run = folder.path();
+        let mut folders = vec![run.to_owned(), folder.probes()];
+        for (file, _) in &self.files[self.settled..] {
+            let path = run.join(file);
+            File::open(&path)
+                .and_then(|file| file.sync_all())
+                .map_err(OutputError::at(&path))?;
+            let parent = path.parent().unwrap_or(run).to_owned();
+            if !folders.contains(&parent) {
+                folders.push(parent);
+            }
+        }
+        for folder in folders.iter().filter(|folder| folder.is_dir()) {
+            sync_folder(folder)?;
+        }
+        self.settled = self.files.len();
+        let settle = |file: &Growing| file.settle(run);
+        Ok(OutputState {
+            written: self.written,
+            diagnostics: Some(settle(self.diagnostics.file())?),
+            probes: self
+                .probes
+                .files()
+                .iter()
+                .map(settle)
+                .collect::<Result<_, _>>()?,
+            film: self
                 .film
                 .as_ref()
-                .map(|film| image::Film::new(film.pace.rate)),
-            probes: ProbeFiles::new(&plan.folder.probes()),
-            plan,
-            diagnostics,
-            series,
-            written: Written::default(),
-        }
+                .map(|(_, file)| settle(file))
+                .transpose()?,
+            series: self
+                .series
+                .as_ref()
+                .map(|list| list.settle(run))
+                .transpose()?,
+            files: self.files.clone(),
+        })
+    }
+
+    /// Notes a file of a frame.
+    fn wrote(&mut self, path: &Path) -> Result<(), OutputError> {
+        let bytes = fs::metadata(path).map_err(OutputError::at(path))?.len();
+        let file = path.strip_prefix(self.plan.folder.path()).unwrap_or(path);
+        let file = file.to_string_lossy().replace('\\', "/");
+        self.files.push((file, bytes));
+        Ok(())
     }
 
     fn frame(&mut self, job: &Frame) -> Result<(), OutputError> {
@@ -261,10 +370,12 @@ impl Work {
     }
 
     fn files(&mut self, index: u64, snapshot: &Snapshot) -> Result<(), OutputError> {
-        let folder = &self.plan.folder;
-        for &format in &self.plan.formats {
+        let folder = self.plan.folder.clone();
+        for format in self.plan.formats.clone() {
             let name = frame_name(index, format.info().ending);
-            write_frame(&folder.frames().join(&name), snapshot, format)?;
+            let path = folder.frames().join(&name);
+            write_frame(&path, snapshot, format)?;
+            self.wrote(&path)?;
             if let Some(series) = self.series.as_mut().filter(|_| format == Format::Vtk) {
                 (series.push(snapshot.time, &format!("frames/{name}")))
                     .map_err(OutputError::at(series.path()))?;
@@ -280,18 +391,20 @@ impl Work {
                 Ok(writer)
             })?;
             self.written.images += 1;
+            self.wrote(&path)?;
         }
-        if let (Some(plan), Some(film)) = (&self.plan.film, &mut self.film)
+        if let (Some(plan), Some((film, file))) = (&self.plan.film, &mut self.film)
             && due(plan.pace.every)
         {
             film.push(&plan.renderer.render(snapshot))
                 .map_err(OutputError::at(&folder.video()))?;
+            file.add(&film.last_packed())?;
         }
         Ok(())
     }
 
     fn finish(mut self) -> Result<Written, OutputError> {
-        if let Some(film) = self.film.filter(|film| !film.is_empty()) {
+        if let Some((film, _)) = self.film.filter(|(film, _)| !film.is_empty()) {
             write_whole(&self.plan.folder.video(), false, |mut writer| {
                 film.write(&mut writer)?;
                 Ok(writer)
@@ -360,7 +473,7 @@ mod tests {
     fn everything_asked_for_is_there() {
         let root = tempfile::tempdir().unwrap();
         let folder = RunFolder::at(&root.path().join("run"), false).unwrap();
-        let mut writer = Writer::start(plan(folder.clone())).unwrap();
+        let mut writer = Writer::start(plan(folder.clone()), None).unwrap();
         for index in 0..9 {
             let x = 0.1 * index as f64;
             writer
@@ -420,7 +533,7 @@ mod tests {
     fn an_error_in_the_background_reaches_the_solver() {
         let root = tempfile::tempdir().unwrap();
         let folder = RunFolder::at(&root.path().join("run"), false).unwrap();
-        let mut writer = Writer::start(plan(folder.clone())).unwrap();
+        let mut writer = Writer::start(plan(folder.clone()), None).unwrap();
         fs::remove_dir_all(folder.frames()).unwrap();
         // The first frame is taken before it is written, so it has no error yet.
         writer

@@ -2,7 +2,7 @@
 
 use super::Limits;
 use super::document::{Sources, Span, Value, from_json};
-use super::files::Files;
+use super::files::{Files, Place};
 use super::plan::contact_with_friction;
 use super::read::Reader;
 use super::shapes::read_shape;
@@ -198,7 +198,7 @@ pub fn colliders_of(resolved: &serde_json::Value) -> Vec<ColliderInfo> {
         return Vec::new();
     };
     let scene = Reader::new(&sources, &root, Span::default());
-    let files = (&Files::Embedded(&[]), &Limits::default());
+    let files = (&Files::new(Place::Embedded(&[])), &Limits::default());
     let read = if scene.opt_integer("dimension") == Some(3) {
         read_colliders::<3>(&scene, 0.0, files, &mut Vec::new()).map(|all| infos(&scene, &all))
     } else {

@@ -2,7 +2,9 @@
 //! a device or a pipe would never end.
 
 use crate::builtin;
+use crate::checkpoint::KeptFile;
 use crate::error::{SceneError, nearest};
+use std::cell::RefCell;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -57,33 +59,108 @@ pub(crate) fn not_text(path: &str, bytes: &[u8], at: usize) -> SceneError {
 }
 
 /// Where the files that a scene names are.
-pub(crate) enum Files<'a> {
+pub(crate) enum Place<'a> {
     /// Beside the scene's own.
     Folder(&'a Path),
     /// In the program.
     Embedded(&'static [(&'static str, &'static str)]),
+    /// Copies that a run has made, in this folder.
+    Kept(&'a [KeptFile], &'a Path),
 }
 
-impl Files<'_> {
-    /// The content of a file of at most `limit` bytes, or why there is none.
-    pub(crate) fn bytes(&self, name: &str, limit: u64) -> Result<Vec<u8>, String> {
-        match self {
-            Self::Folder(folder) => read_plain(&folder.join(name), limit),
-            Self::Embedded(files) => match files.iter().find(|(file, _)| *file == name) {
-                Some((_, text)) => Ok(text.as_bytes().to_vec()),
-                None => Err("built-in scenes have no such file".to_owned()),
+/// The files that a scene names, and which of them it has asked for.
+pub(crate) struct Files<'a> {
+    place: Place<'a>,
+    used: RefCell<Vec<SceneFile>>,
+}
+
+/// A file that a scene was made from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneFile {
+    /// As the scene names it.
+    pub name: String,
+    /// Whether it was looked for where the command was given, not beside the scene.
+    pub here: bool,
+    source: FileSource,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum FileSource {
+    Path(PathBuf),
+    Embedded(&'static str),
+}
+
+impl SceneFile {
+    /// Its bytes.
+    ///
+    /// # Errors
+    /// If it can no longer be opened.
+    pub fn open(&self) -> std::io::Result<Box<dyn Read>> {
+        Ok(match &self.source {
+            FileSource::Path(path) => Box::new(File::open(path)?),
+            FileSource::Embedded(text) => Box::new(text.as_bytes()),
+        })
+    }
+}
+
+impl<'a> Files<'a> {
+    pub(crate) fn new(place: Place<'a>) -> Self {
+        Self {
+            place,
+            used: RefCell::default(),
+        }
+    }
+
+    /// The files that were asked for.
+    pub(crate) fn used(&self) -> Vec<SceneFile> {
+        self.used.borrow().clone()
+    }
+
+    /// Where a file is; `here`: not beside the scene, but where the command was given.
+    fn find(&self, name: &str, here: bool) -> Result<FileSource, String> {
+        let source = match self.place {
+            Place::Kept(files, folder) => {
+                let is_it = |file: &&KeptFile| file.name == name && file.here == here;
+                match files.iter().find(is_it) {
+                    Some(file) => FileSource::Path(folder.join(&file.copy)),
+                    None => return Err("the run has kept no copy of it".to_owned()),
+                }
+            }
+            _ if here => FileSource::Path(PathBuf::from(name)),
+            Place::Folder(folder) => FileSource::Path(folder.join(name)),
+            Place::Embedded(files) => match files.iter().find(|(file, _)| *file == name) {
+                Some((_, text)) => FileSource::Embedded(text),
+                None => return Err("built-in scenes have no such file".to_owned()),
             },
+        };
+        let file = SceneFile {
+            name: name.to_owned(),
+            here,
+            source: source.clone(),
+        };
+        let mut used = self.used.borrow_mut();
+        if !used.contains(&file) {
+            used.push(file);
+        }
+        Ok(source)
+    }
+
+    /// The content of a file of at most `limit` bytes, or why there is none.
+    pub(crate) fn bytes(&self, name: &str, here: bool, limit: u64) -> Result<Vec<u8>, String> {
+        match self.find(name, here)? {
+            FileSource::Path(path) => read_plain(&path, limit),
+            FileSource::Embedded(text) => Ok(text.as_bytes().to_vec()),
         }
     }
 
     /// Its path, if it is there.
-    pub(crate) fn path(&self, name: &str) -> Result<PathBuf, String> {
-        match self {
-            Self::Folder(folder) => {
-                check_plain(&folder.join(name))?;
-                Ok(folder.join(name))
+    pub(crate) fn path(&self, name: &str, here: bool) -> Result<PathBuf, String> {
+        match self.find(name, here)? {
+            FileSource::Path(path) => {
+                check_plain(&path)?;
+                Ok(path)
             }
-            Self::Embedded(_) => Err("built-in scenes have no such file".to_owned()),
+            FileSource::Embedded(_) => Err("built-in scenes have no such file".to_owned()),
         }
     }
 }

@@ -1836,7 +1836,14 @@ pub(crate) static OUTPUT: Section = Section {
             Kind::Integer(0, 1_000_000_000),
             "frames",
             Value("0"),
-            "For checkpoints, which this version does not write yet; 0: none.",
+            "Keep a checkpoint every so many frames, which `lahar resume` goes on from; 0: none by frames.",
+        ),
+        key(
+            "checkpoint_minutes",
+            Kind::Number(Bound::NotNegative),
+            "min",
+            Value("5.0"),
+            "Keep a checkpoint at the end of a frame when so much time has passed since the last one; 0: none by time.",
         ),
         key(
             "picture_size",

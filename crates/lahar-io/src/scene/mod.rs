@@ -48,9 +48,11 @@ pub use reference::{docs, docs_of, schema};
 pub use stiffness::SoundSpeeds;
 
 use crate::builtin;
+use crate::checkpoint::KeptFile;
 use crate::error::SceneError;
 use document::{Document, Span, json_table};
-use files::{Files, read_text};
+pub use files::SceneFile;
+use files::{Files, Place, read_text};
 use lahar::{Isa, Simulate, Simulation, TimeStep};
 use plan::Plan;
 use read::Reader;
@@ -145,8 +147,10 @@ pub struct OutputPlan {
     pub fields: Option<Vec<String>>,
     /// Frames between frames that are written.
     pub every: u64,
-    /// Frames between checkpoints; 0: none.
+    /// Frames between checkpoints; 0: none by frames.
     pub checkpoint_every: u64,
+    /// Minutes of the clock between checkpoints; 0: none by time.
+    pub checkpoint_minutes: f64,
     /// Width and height of pictures \[pixels\].
     pub picture_size: [u32; 2],
 }
@@ -160,6 +164,8 @@ pub struct Scene {
     pub text: String,
     /// What was laid over it.
     pub overrides: Vec<(String, String)>,
+    /// The files that it names.
+    pub files: Vec<SceneFile>,
     /// What it is, for people.
     pub title: String,
     /// 2 or 3.
@@ -235,7 +241,7 @@ impl Scene {
         limits: &Limits,
     ) -> Result<Self, SceneError> {
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
-        read_scene(text, name, overrides, limits, &Files::Folder(folder))
+        read_scene(text, name, overrides, limits, Place::Folder(folder))
     }
 
     /// Reads a built-in scene by its name, or a file.
@@ -256,10 +262,21 @@ impl Scene {
         limits: &Limits,
     ) -> Result<Self, SceneError> {
         if let Some(scene) = builtin::find(what) {
-            let files = Files::Embedded(scene.files);
-            return read_scene(scene.text, scene.name, overrides, limits, &files);
+            let files = Place::Embedded(scene.files);
+            return read_scene(scene.text, scene.name, overrides, limits, files);
         }
         Self::parse_within(&read_text(what)?, what, overrides, limits)
+    }
+
+    /// A scene that a run has kept with copies of its files, which are in a folder.
+    pub(crate) fn kept(
+        name: &str,
+        text: &str,
+        overrides: &[(String, String)],
+        limits: &Limits,
+        (files, folder): (&[KeptFile], &Path),
+    ) -> Result<Self, SceneError> {
+        read_scene(text, name, overrides, limits, Place::Kept(files, folder))
     }
 
     /// Samples the particles and makes the simulation.
@@ -505,18 +522,31 @@ fn read_scene(
     name: &str,
     overrides: &[(String, String)],
     limits: &Limits,
-    files: &Files<'_>,
+    files: Place<'_>,
 ) -> Result<Scene, SceneError> {
+    let files = Files::new(files);
     let mut document = Document::parse(text, name, overrides)?;
     let Document { sources, root } = &mut document;
     let dimension = check::check(sources, root)?;
     let reader = Reader::new(sources, root, Span::default());
     if dimension == 2 {
-        let plan = Plan::<2>::read(&reader, limits, files)?;
-        scene(&document, plan, AnyPlan::D2, (text, name, overrides))
+        let plan = Plan::<2>::read(&reader, limits, &files)?;
+        scene(
+            &document,
+            plan,
+            AnyPlan::D2,
+            (text, name, overrides),
+            files.used(),
+        )
     } else {
-        let plan = Plan::<3>::read(&reader, limits, files)?;
-        scene(&document, plan, AnyPlan::D3, (text, name, overrides))
+        let plan = Plan::<3>::read(&reader, limits, &files)?;
+        scene(
+            &document,
+            plan,
+            AnyPlan::D3,
+            (text, name, overrides),
+            files.used(),
+        )
     }
 }
 
@@ -525,6 +555,7 @@ fn scene<const D: usize>(
     plan: Plan<D>,
     wrap: impl Fn(Plan<D>) -> AnyPlan,
     (text, name, overrides): (&str, &str, &[(String, String)]),
+    files: Vec<SceneFile>,
 ) -> Result<Scene, SceneError> {
     let reader = Reader::new(&document.sources, &document.root, Span::default());
     let (frame_rate, substeps_per_frame) = read_frames(&reader, plan.time_step)?;
@@ -565,6 +596,7 @@ fn scene<const D: usize>(
         name: name.to_owned(),
         text: text.to_owned(),
         overrides: overrides.to_vec(),
+        files,
         title: reader.text("title")?.to_owned(),
         dimension: D,
         duration: reader.number("duration")?,
@@ -671,6 +703,7 @@ fn read_output(scene: &Reader<'_>) -> Result<OutputPlan, SceneError> {
         fields: table.opt_words("fields"),
         every: table.integer("every")?,
         checkpoint_every: table.integer("checkpoint_every")?,
+        checkpoint_minutes: table.number("checkpoint_minutes")?,
         picture_size: size.map(|side| side as u32),
     })
 }

@@ -20,7 +20,6 @@ use lahar::{
     Collider, Contact, Corners, Cushion, Domain, Force, ForceForm, Kernel, Material, Model, Probe,
     Sides, TimeStep, Transfer, WallStyle,
 };
-use std::path::Path;
 
 /// Everything that depends on the dimension.
 #[derive(Clone, Debug)]
@@ -971,12 +970,7 @@ fn read_list<const D: usize>(
     warnings: &mut Vec<String>,
 ) -> Result<ParticleList<D>, SceneError> {
     // What the command line names lies where the command is given.
-    let here = Files::Folder(Path::new(""));
-    let files = if table.is_override("particles") {
-        &here
-    } else {
-        files
-    };
+    let here = table.is_override("particles");
     for key in ["particles_per_cell", "spacing", "count"] {
         if table.has(key) {
             return Err(table.error_at_key(
@@ -990,7 +984,7 @@ fn read_list<const D: usize>(
             "particles",
             format!("cannot read \"{}\": {reason}", super::shorten(path)),
         );
-        error.hint(if table.is_override("particles") {
+        error.hint(if here {
             "with --set, particle lists are found from the current folder"
         } else {
             "particle lists are found from the scene's folder"
@@ -998,7 +992,7 @@ fn read_list<const D: usize>(
     };
     let lower = path.to_ascii_lowercase();
     let mut list = if lower.ends_with(".csv") {
-        let bytes = files.bytes(path, limits.memory).map_err(cannot)?;
+        let bytes = files.bytes(path, here, limits.memory).map_err(cannot)?;
         match core::str::from_utf8(&bytes) {
             Ok(text) => {
                 let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -1007,10 +1001,10 @@ fn read_list<const D: usize>(
             Err(error) => return Err(super::not_text(path, &bytes, error.valid_up_to())),
         }
     } else if lower.ends_with(".ply") {
-        let bytes = files.bytes(path, limits.memory).map_err(cannot)?;
+        let bytes = files.bytes(path, here, limits.memory).map_err(cannot)?;
         crate::ply::parse_ply(&bytes, path)?
     } else if lower.ends_with(".npz") {
-        let file = files.path(path).map_err(cannot)?;
+        let file = files.path(path, here).map_err(cannot)?;
         crate::particle_list::read_npz(&file, limits.memory)?
     } else {
         return Err(table.error_at("particles", "a particle list is a .csv, .npz or .ply file"));

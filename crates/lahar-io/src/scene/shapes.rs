@@ -273,14 +273,16 @@ fn read_mesh<const D: usize>(
         Some(keys) => keys.text("file")?,
         None => table.text("mesh")?,
     };
-    let bytes = files.bytes(path, limits.memory / 8).map_err(|reason| {
-        let message = format!("cannot read \"{}\": {reason}", super::shorten(path));
-        let error = match &keys {
-            Some(keys) => keys.error_at("file", message),
-            None => table.error_at("mesh", message),
-        };
-        error.hint("meshes are found from the scene's folder")
-    })?;
+    let bytes = files
+        .bytes(path, false, limits.memory / 8)
+        .map_err(|reason| {
+            let message = format!("cannot read \"{}\": {reason}", super::shorten(path));
+            let error = match &keys {
+                Some(keys) => keys.error_at("file", message),
+                None => table.error_at("mesh", message),
+            };
+            error.hint("meshes are found from the scene's folder")
+        })?;
     let mesh = Shape::Mesh(Arc::new(crate::mesh_file::parse_mesh(&bytes, path)?));
     let Some(keys) = keys else {
         return Ok(mesh);

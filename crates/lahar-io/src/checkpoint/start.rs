@@ -1,0 +1,200 @@
+//! `checkpoints/start.json`: what a run began with, so that it can begin or go on without the scene's own files.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::SceneError;
+use crate::output::{OutputError, sync_folder, write_whole};
+use crate::scene::{Limits, Scene};
+
+/// What a run began with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Start {
+    /// Version of the program.
+    pub lahar: String,
+    /// Name of the scene: a built-in's, or its file's.
+    pub scene: String,
+    /// The scene's text.
+    pub text: String,
+    /// What was laid over it.
+    pub set: Vec<(String, String)>,
+    /// Copies of the files that it names.
+    pub files: Vec<KeptFile>,
+    /// The instruction set in use.
+    pub isa: String,
+    /// Frames after the one at the start.
+    pub frames: u64,
+    /// What is written; whoever runs knows how to read it.
+    pub outputs: serde_json::Value,
+    /// What looked suspicious about the scene.
+    pub warnings: Vec<String>,
+}
+
+/// The copy of a file that a scene names.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KeptFile {
+    /// As the scene names it.
+    pub name: String,
+    /// Whether it was looked for where the command was given, not beside the scene.
+    pub here: bool,
+    /// The copy's name in `checkpoints/files/`.
+    pub copy: String,
+    /// Its length.
+    pub bytes: u64,
+    /// CRC-32 of its bytes.
+    pub crc32: u32,
+}
+
+const NAME: &str = "start.json";
+const FILES: &str = "files";
+
+impl Start {
+    /// Whether `folder` (`DIR/checkpoints`) tells what a run began with.
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join(NAME).exists()
+    }
+
+    /// Copies the files of `scene` to `folder`, and writes this there. When it returns all is on the disk.
+    ///
+    /// # Errors
+    /// If something cannot be read or written.
+    pub fn write(&mut self, scene: &Scene, folder: &Path) -> Result<(), OutputError> {
+        let files = folder.join(FILES);
+        self.files.clear();
+        for (index, file) in scene.files.iter().enumerate() {
+            fs::create_dir_all(&files).map_err(OutputError::at(&files))?;
+            let ending = Path::new(&file.name).extension().unwrap_or_default();
+            let copy = Path::new(&index.to_string()).with_extension(ending);
+            let path = files.join(&copy);
+            let mut sum = Summed::default();
+            write_whole(&path, true, |mut writer| {
+                let mut from = file.open()?;
+                io::copy(&mut from, &mut Both(&mut writer, &mut sum))?;
+                Ok(writer)
+            })?;
+            self.files.push(KeptFile {
+                name: file.name.clone(),
+                here: file.here,
+                copy: copy.to_string_lossy().into_owned(),
+                bytes: sum.bytes,
+                crc32: sum.crc.finalize(),
+            });
+        }
+        if !self.files.is_empty() {
+            sync_folder(&files)?;
+        }
+        self.rewrite(folder)
+    }
+
+    /// Writes this alone, to `folder` (`DIR/checkpoints`).
+    ///
+    /// # Errors
+    /// If it cannot be written; what was there stays.
+    pub fn rewrite(&self, folder: &Path) -> Result<(), OutputError> {
+        write_whole(&folder.join(NAME), true, |mut writer| {
+            writer.write_all(&self.text()?)?;
+            Ok(writer)
+        })?;
+        sync_folder(folder)
+    }
+
+    fn text(&self) -> io::Result<Vec<u8>> {
+        let mut text = serde_json::to_vec_pretty(self)?;
+        text.push(b'\n');
+        Ok(text)
+    }
+
+    /// What a checkpoint remembers of this: it belongs to no other run. How long a run is, is not part of it.
+    pub fn sum(&self) -> u32 {
+        let any_length = Self {
+            frames: 0,
+            ..self.clone()
+        };
+        any_length.text().map_or(0, |text| crc32fast::hash(&text))
+    }
+
+    /// What the run in `folder` (`DIR/checkpoints`) began with.
+    ///
+    /// # Errors
+    /// It is not there, or damaged.
+    pub fn read(folder: &Path) -> Result<Self, OutputError> {
+        let path = folder.join(NAME);
+        let text = fs::read(&path)
+            .map_err(|error| OutputError::usage(&path, format!("cannot be read: {error}")))?;
+        serde_json::from_slice(&text)
+            .map_err(|error| OutputError::usage(&path, format!("it is damaged: {error}")))
+    }
+
+    /// The scene, from this and the copies in `folder` alone.
+    ///
+    /// # Errors
+    /// A copy is not what it was; or this program reads the scene differently.
+    pub fn scene(&self, folder: &Path) -> Result<Scene, Unusable> {
+        let files = folder.join(FILES);
+        for kept in &self.files {
+            let path = files.join(&kept.copy);
+            let mut sum = Summed::default();
+            let read = File::open(&path).and_then(|mut file| io::copy(&mut file, &mut sum));
+            let what = match read {
+                Err(error) => format!("cannot be read: {error}"),
+                Ok(_) if (sum.bytes, sum.crc.clone().finalize()) != (kept.bytes, kept.crc32) => {
+                    format!("it was altered since it was copied from {}", kept.name)
+                }
+                Ok(_) => continue,
+            };
+            return Err(Unusable::File(OutputError::usage(&path, what)));
+        }
+        let limits = Limits::default();
+        Scene::kept(
+            &self.scene,
+            &self.text,
+            &self.set,
+            &limits,
+            (&self.files, &files),
+        )
+        .map_err(|error| Unusable::Scene(Box::new(error)))
+    }
+}
+
+/// Why a scene that was kept cannot be read again.
+#[derive(Debug)]
+pub enum Unusable {
+    /// A copy was damaged.
+    File(OutputError),
+    /// The scene is wrong for this program.
+    Scene(Box<SceneError>),
+}
+
+/// Counts and sums up what is written to it.
+#[derive(Clone, Default)]
+struct Summed {
+    bytes: u64,
+    crc: crc32fast::Hasher,
+}
+
+impl Write for Summed {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.crc.update(bytes);
+        self.bytes += bytes.len() as u64;
+        Ok(bytes.len())
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Writes to one, and sums up what went there.
+struct Both<'a, W>(&'a mut W, &'a mut Summed);
+
+impl<W: Write> Write for Both<'_, W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write_all(bytes)?;
+        self.1.write(bytes)
+    }
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush()
+    }
+}
