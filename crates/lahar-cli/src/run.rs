@@ -425,6 +425,7 @@ fn first_record(plan: &Plan, simulation: &dyn Simulate, warnings: Vec<String>) -
         particles: simulation.particle_count() as u64,
         particle_steps: 0,
         particle_steps_per_second: 0.0,
+        startup_seconds: 0.0,
         seconds: 0.0,
         phase_seconds: PhaseSeconds::default(),
         sorts: 0,

@@ -410,8 +410,7 @@ mod tests {
     /// Sums can be made to fit; sizes beyond the file must still not be believed.
     #[test]
     fn sizes_that_lie_allocate_nothing() {
-        let (header, mut checkpoint) = example();
-        checkpoint.arrays.truncate(1);
+        let (header, checkpoint) = example();
         let good = write(Vec::new(), &header, &checkpoint).unwrap();
         let text = String::from_utf8_lossy(&good).into_owned();
         assert!(text.contains("\"shape\":[3]"));
