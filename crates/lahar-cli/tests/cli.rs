@@ -79,6 +79,7 @@ fn a_run_leaves_what_was_asked_for() {
     assert_eq!(
         names(&folder),
         [
+            "checkpoints",
             "diagnostics.csv",
             "frames",
             "images",
@@ -117,7 +118,7 @@ fn json_is_one_document_and_nothing_else() {
     assert_eq!(report["frames"], 2);
     assert_eq!(
         names(here.path().join("out/dam-break").as_path()),
-        ["diagnostics.csv", "run.json"]
+        ["checkpoints", "diagnostics.csv", "run.json"]
     );
 
     let output = lahar(here.path(), &["list", "--json"]);
