@@ -8,6 +8,7 @@ use crate::shape::Shape;
 use lahar::boundary::Placed;
 use lahar::material::Fluid;
 use lahar::{Collider, Deformation, Model, ParticleBatch, Setup};
+use rayon::prelude::*;
 
 impl<const D: usize> Plan<D> {
     /// What the simulator is made from.
@@ -198,7 +199,8 @@ fn put_under_pressure<const D: usize>(
         .sum();
     let jacobian: Vec<f64> = batch
         .position
-        .iter()
+        .par_iter()
+        .with_min_len(1 << 12)
         .map(|x| {
             let potential: f64 = (0..D).map(|i| -gravity[i] * x[i]).sum();
             1.0 + fluid.jacobian_minus_one_below(surface - potential, density)
