@@ -7,6 +7,8 @@ pub mod error;
 mod even;
 pub mod export;
 mod expression;
+#[doc(hidden)]
+pub mod fuzzing;
 pub mod image;
 mod mesh_file;
 pub mod npz;

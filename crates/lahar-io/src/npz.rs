@@ -101,6 +101,23 @@ pub fn read_npy(path: impl AsRef<Path>) -> Result<NpzArray, NpzError> {
     read_array(&mut BufReader::new(file), String::new(), &mut left).map_err(fail)
 }
 
+/// [`read_limited`] from anything seekable.
+///
+/// # Errors
+/// What is wrong.
+pub(crate) fn read_from<R: Read + Seek>(reader: R, limit: u64) -> Result<Vec<NpzArray>, String> {
+    read_archive(reader, limit).map_err(|(_, what)| what)
+}
+
+/// [`read_npy`] from anything.
+///
+/// # Errors
+/// What is wrong.
+pub(crate) fn read_array_from(mut reader: impl Read) -> Result<NpzArray, String> {
+    let mut left = MAX_BYTES;
+    read_array(&mut reader, String::new(), &mut left)
+}
+
 /// [`read_limited`] from anything seekable; errors are the array and what is wrong.
 fn read_archive<R: Read + Seek>(
     reader: R,

@@ -258,7 +258,7 @@ pub fn read_npz<const D: usize>(path: &Path, limit: u64) -> Result<ParticleList<
     from_arrays(&arrays).map_err(fail)
 }
 
-fn from_arrays<const D: usize>(arrays: &[NpzArray]) -> Result<ParticleList<D>, String> {
+pub(crate) fn from_arrays<const D: usize>(arrays: &[NpzArray]) -> Result<ParticleList<D>, String> {
     let Some(position) = arrays.iter().find(|array| array.name == "position") else {
         let names: Vec<&str> = arrays.iter().map(|array| array.name.as_str()).collect();
         return Err(format!(

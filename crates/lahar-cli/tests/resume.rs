@@ -1,0 +1,446 @@
+//! Runs that end before their time, and go on: what is left is to the byte what an unbroken run leaves.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// Water and jelly, gauges, a force by where particles started; a list of particles beside the scene.
+const SCENE: &str = r#"
+duration = 0.2
+frame_rate = 60
+dx = 0.025
+gravity = [0.0, -9.81]
+[domain]
+min = [0.0, 0.0]
+max = [1.0, 0.6]
+[materials.water]
+preset = "water"
+sound_speed = 25.0
+[materials.jelly]
+preset = "jelly"
+[[bodies]]
+name = "column"
+material = "water"
+shape = { box = { min = [0.0, 0.0], max = [0.3, 0.4] } }
+[[bodies]]
+name = "list"
+material = "jelly"
+particles = "jelly.csv"
+velocity = [-1.0, 0.0]
+[[forces]]
+acceleration = ["4*(X - x)", "0"]
+[[probes]]
+name = "wall"
+pressure = { at = [1.0, 0.05] }
+rate = 300
+[[probes]]
+name = "floor"
+force = { on = "bottom" }
+[output]
+formats = ["npz", "vtk", "png", "gif"]
+picture_size = [96, 64]
+checkpoint_every = 3
+"#;
+
+fn here() -> TempDir {
+    let here = tempfile::tempdir().expect("a temporary folder");
+    fs::write(here.path().join("scene.toml"), SCENE).unwrap();
+    let places = (0..100).map(|i| {
+        (
+            0.6 + 0.01 * f64::from(i % 10),
+            0.1 + 0.01 * f64::from(i / 10),
+        )
+    });
+    let rows: String = places.map(|(x, y)| format!("{x},{y},1e-4\n")).collect();
+    fs::write(here.path().join("jelly.csv"), format!("x,y,volume\n{rows}")).unwrap();
+    here
+}
+
+fn command(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lahar"));
+    command.current_dir(folder).args(words);
+    command
+}
+
+fn lahar(folder: &Path, words: &[&str]) -> Output {
+    command(folder, words).output().expect("the binary starts")
+}
+
+fn errors(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+#[track_caller]
+fn code(output: &Output, expected: i32) {
+    let what = errors(output);
+    assert_eq!(output.status.code(), Some(expected), "{what}");
+}
+
+/// Every file of a run but checkpoints/, by its path; run.json without what depends on the clock.
+fn files(run: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    fn walk(root: &Path, folder: &Path, into: &mut BTreeMap<PathBuf, Vec<u8>>) {
+        for entry in fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                walk(root, &path, into);
+            } else {
+                let bytes = fs::read(&path).expect("a file");
+                into.insert(path.strip_prefix(root).expect("below it").into(), bytes);
+            }
+        }
+    }
+    let mut all = BTreeMap::new();
+    walk(run, run, &mut all);
+    all.retain(|path, _| !path.starts_with("checkpoints"));
+    let record = all
+        .remove(Path::new("run.json"))
+        .expect("run.json is there");
+    let mut record: Value = serde_json::from_slice(&record).expect("run.json is whole");
+    for clock in [
+        "seconds",
+        "startup_seconds",
+        "phase_seconds",
+        "particle_steps_per_second",
+        "threads",
+    ] {
+        record.as_object_mut().expect("a table").remove(clock);
+    }
+    all.insert("run.json".into(), record.to_string().into_bytes());
+    all
+}
+
+#[track_caller]
+fn assert_same(one: &Path, other: &Path) {
+    let (one, other) = (files(one), files(other));
+    assert_eq!(
+        one.keys().collect::<Vec<_>>(),
+        other.keys().collect::<Vec<_>>()
+    );
+    for (path, bytes) in &one {
+        assert!(*bytes == other[path], "{} differs", path.display());
+    }
+}
+
+fn checkpoints(run: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(run.join("checkpoints")).into_iter().flatten();
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let mut found: Vec<_> = paths
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|ending| ending == "checkpoint")
+        })
+        .collect();
+    found.sort();
+    found
+}
+
+/// The unbroken run.
+fn whole(here: &Path) -> PathBuf {
+    code(
+        &lahar(here, &["run", "scene.toml", "-o", "whole", "--threads=1"]),
+        0,
+    );
+    here.join("whole")
+}
+
+/// Starts a run and waits until `wanted`; what is still going then.
+fn until(here: &Path, words: &[&str], wanted: impl Fn() -> bool) -> Child {
+    let mut child = command(here, words)
+        .stderr(Stdio::null())
+        .stdout(Stdio::null())
+        .spawn()
+        .expect("the binary starts");
+    let end = Instant::now() + Duration::from_secs(120);
+    while !wanted() && child.try_wait().expect("a process").is_none() {
+        assert!(Instant::now() < end, "it never came to that");
+        std::thread::sleep(Duration::from_micros(200));
+    }
+    child
+}
+
+fn kill(mut child: Child) {
+    drop(child.kill()); // may have ended
+    child.wait().expect("a process");
+}
+
+/// Killed before and after its first checkpoint, while it writes, and again while it goes on.
+#[test]
+fn a_killed_run_goes_on_as_if_it_had_not_been() {
+    let here = here();
+    let here = here.path();
+    let whole = whole(here);
+    let frame = |run: &str, n: u32| here.join(run).join(format!("frames/{n:06}.npz"));
+    let begun = |run: &'static str| {
+        let path = here.join(run).join("checkpoints/start.json");
+        move || path.exists()
+    };
+    let written = |run: &'static str, n: u32| {
+        let path = frame(run, n);
+        move || path.exists()
+    };
+    let run = |name: &'static str, threads: &'static str| {
+        ["run", "scene.toml", "-o", name, "--threads", threads]
+    };
+    kill(until(here, &run("early", "2"), begun("early")));
+    kill(until(here, &run("first", "1"), written("first", 1)));
+    kill(until(here, &run("later", "2"), written("later", 7)));
+    kill(until(here, &run("twice", "1"), written("twice", 4)));
+    // Nothing of the scene's own is needed any more.
+    for file in ["scene.toml", "jelly.csv"] {
+        fs::remove_file(here.join(file)).unwrap();
+    }
+    kill(until(here, &["resume", "twice"], written("twice", 9)));
+    for run in ["early", "first", "later", "twice"] {
+        code(&lahar(here, &["resume", run, "--threads=2"]), 0);
+        assert_same(&whole, &here.join(run));
+    }
+    assert_eq!(checkpoints(&whole).len(), 2);
+    assert!(!whole.join("checkpoints/film").exists());
+    // Done is done.
+    let output = lahar(here, &["resume", "later", "--json"]);
+    code(&output, 0);
+    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (&said["status"], &said["frames"]),
+        (&"done".into(), &13.into())
+    );
+}
+
+/// SIGTERM, as Ctrl-C: soon, with a checkpoint and a line on how to go on.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_keeps_a_checkpoint_and_goes_on() {
+    let here = here();
+    let here = here.path();
+    let whole = whole(here);
+    let words = [
+        "run",
+        "scene.toml",
+        "-o",
+        "r",
+        "--threads=1",
+        "--set",
+        "output.checkpoint_every=0",
+    ];
+    let mut child = command(here, &words)
+        .stderr(Stdio::piped())
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !here.join("r/frames/000002.npz").exists() {
+        assert!(child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let killed = Command::new("kill")
+        .args(["-TERM", &child.id().to_string()])
+        .status();
+    assert!(killed.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    code(&output, 130);
+    assert!(
+        errors(&output).contains("`lahar resume"),
+        "{}",
+        errors(&output)
+    );
+    assert_eq!(checkpoints(&here.join("r")).len(), 1);
+    let output = lahar(here, &["run", "scene.toml", "-o", "r"]);
+    code(&output, 2);
+    assert!(errors(&output).contains("lahar resume") && errors(&output).contains("--overwrite"));
+    code(&lahar(here, &["resume", "r"]), 0);
+    let (mut one, mut other) = (files(&whole), files(&here.join("r")));
+    // Their scenes differ, by the key that was set.
+    one.remove(Path::new("run.json"));
+    other.remove(Path::new("run.json"));
+    assert!(one == other);
+}
+
+#[test]
+fn a_run_goes_on_beyond_its_end() {
+    let here = here();
+    let here = here.path();
+    let whole = whole(here);
+    let short = ["run", "scene.toml", "-o", "r", "--frames=5", "--format=npz"];
+    code(&lahar(here, &short), 0);
+    let output = lahar(here, &["resume", "r", "--frames=4"]);
+    code(&output, 2);
+    assert!(
+        errors(&output).contains("frame 5 already"),
+        "{}",
+        errors(&output)
+    );
+    let output = lahar(here, &["resume", "r", "--until=0.2"]);
+    code(&output, 0);
+    assert!(
+        errors(&output).contains("from frame 5 of 12"),
+        "{}",
+        errors(&output)
+    );
+    for file in ["diagnostics.csv", "probes/wall.csv", "frames/000012.npz"] {
+        let read = |run: &Path| fs::read(run.join(file)).unwrap();
+        assert!(read(&whole) == read(&here.join("r")), "{file}");
+    }
+}
+
+/// A run that was stopped after some frames and two checkpoints.
+fn stopped(here: &Path, name: &str) -> PathBuf {
+    let run = here.join(name);
+    let words = ["run", "scene.toml", "-o", name, "--threads=1"];
+    kill(until(here, &words, || checkpoints(&run).len() > 1));
+    assert_eq!(checkpoints(&run).len(), 2);
+    run
+}
+
+#[test]
+fn damaged_files_are_told_and_passed_over() {
+    let here = here();
+    let here = here.path();
+    let whole = whole(here);
+    let run = stopped(here, "r");
+    // The newest checkpoint is cut, a frame is gone, a partial file lies about.
+    let newest = checkpoints(&run).pop().unwrap();
+    let bytes = fs::read(&newest).unwrap();
+    fs::write(&newest, &bytes[..bytes.len() / 2]).unwrap();
+    fs::write(run.join("frames/000099.npz.partial"), "half").unwrap();
+    let gone = run.join("frames/000001.npz");
+    let frame = fs::read(&gone).unwrap();
+    fs::remove_file(&gone).unwrap();
+    let output = lahar(here, &["resume", "r"]);
+    code(&output, 0);
+    let said = errors(&output);
+    assert!(
+        said.contains("cut short") && said.contains("frames/000001.npz"),
+        "{said}"
+    );
+    fs::write(&gone, frame).unwrap();
+    assert_same(&whole, &run);
+
+    // An altered byte in both, or an altered table: the run starts over.
+    for damage in ["checkpoints", "diagnostics.csv"] {
+        let run = stopped(here, damage);
+        let damaged = match damage {
+            "checkpoints" => checkpoints(&run),
+            file => vec![run.join(file)],
+        };
+        for path in damaged {
+            let mut bytes = fs::read(&path).unwrap();
+            let middle = bytes.len() / 2;
+            bytes[middle] ^= 4;
+            fs::write(&path, bytes).unwrap();
+        }
+        let output = lahar(here, &["resume", damage]);
+        code(&output, 0);
+        let said = errors(&output);
+        assert!(
+            said.contains("altered") && said.contains("starts over"),
+            "{said}"
+        );
+        assert_same(&whole, &run);
+    }
+
+    // Without what it began with there is nothing to go on from.
+    fs::write(run.join("checkpoints/start.json"), "{").unwrap();
+    let output = lahar(here, &["resume", "r"]);
+    code(&output, 2);
+    assert!(
+        errors(&output).contains("start.json: it is damaged"),
+        "{}",
+        errors(&output)
+    );
+    for folder in ["nowhere", "."] {
+        let output = lahar(here, &["resume", folder]);
+        code(&output, 2);
+        let said = errors(&output);
+        assert!(said.contains("there is no"), "{said}");
+    }
+}
+
+#[test]
+fn two_runs_do_not_share_a_folder() {
+    let here = here();
+    let here = here.path();
+    let run = here.join("r");
+    let words = [
+        "run",
+        "scene.toml",
+        "-o",
+        "r",
+        "--threads=1",
+        "--frames=100000",
+    ];
+    let first = until(here, &words, || run.join("frames/000000.npz").exists());
+    for words in [
+        &["resume", "r"][..],
+        &["run", "scene.toml", "-o", "r", "--overwrite"],
+    ] {
+        let output = lahar(here, words);
+        code(&output, 2);
+        let said = errors(&output);
+        assert!(said.contains("another run is writing"), "{said}");
+    }
+    kill(first);
+    code(
+        &lahar(
+            here,
+            &["run", "scene.toml", "-o", "r", "--overwrite", "--frames=1"],
+        ),
+        0,
+    );
+}
+
+/// A disk that takes no more: an error that names the file, exit 1, and a checkpoint from which the run goes on
+/// when there is room. A limit on the size of files stands for the disk: the film outgrows it.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_is_an_error_and_nothing_is_lost() {
+    let here = here();
+    let here = here.path();
+    let words = "run scene.toml --threads=1 --format=npz,gif --set output.picture_size=[640,360]";
+    let run = |limits: &str, folder: &str| {
+        let lahar = env!("CARGO_BIN_EXE_lahar");
+        // The signal that comes with the limit stays ignored in what is executed.
+        let script = format!("trap '' XFSZ; {limits} exec '{lahar}' {words} -o {folder}");
+        let output = Command::new("sh")
+            .current_dir(here)
+            .args(["-c", &script])
+            .output();
+        output.expect("there is a shell")
+    };
+    code(&run("", "whole"), 0);
+    // In halves of a kilobyte.
+    let output = run("ulimit -f 200;", "r");
+    code(&output, 1);
+    let said = errors(&output);
+    assert!(said.contains("checkpoints/film: cannot write"), "{said}");
+    assert!(
+        said.contains(".checkpoint") && said.contains("`lahar resume r`"),
+        "{said}"
+    );
+    assert!(!checkpoints(&here.join("r")).is_empty());
+    let output = lahar(here, &["resume", "r"]);
+    code(&output, 0);
+    assert!(
+        errors(&output).contains("on from frame"),
+        "{}",
+        errors(&output)
+    );
+    assert_same(&here.join("whole"), &here.join("r"));
+}
+
+/// Where nothing can be written, nothing is begun.
+#[cfg(unix)]
+#[test]
+fn an_unwritable_place_is_named() {
+    let here = here();
+    let output = lahar(here.path(), &["run", "scene.toml", "-o", "/dev/null/r"]);
+    code(&output, 1);
+    assert!(
+        errors(&output).contains("/dev/null/r"),
+        "{}",
+        errors(&output)
+    );
+}

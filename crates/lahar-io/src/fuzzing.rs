@@ -1,0 +1,202 @@
+//! What users hand in, from bytes: every reader as the targets in fuzz/ call it. Nothing here returns anything:
+//! all that is looked for are panics, hangs and memory.
+
+use std::cell::LazyCell;
+use std::io::Cursor;
+
+use lahar::checkpoint::Values;
+use lahar::{Checkpoint, Isa};
+
+use crate::expression::Expression;
+use crate::scene::{Limits, Scene};
+use crate::{checkpoint, mesh_file, npz, particle_list, ply};
+
+/// Memory that a scene may ask for \[bytes\]: enough for some thousand particles, so that one takes no second.
+const MEMORY: u64 = 1 << 20;
+
+/// A scene file; built, if it is sound and small.
+pub fn scene(bytes: &[u8]) {
+    let Ok(text) = core::str::from_utf8(bytes) else {
+        return;
+    };
+    if let Ok(scene) = Scene::parse_within(text, "fuzz.toml", &[], &Limits { memory: MEMORY }) {
+        drop(scene.resolved());
+        drop(scene.summary());
+        drop(scene.build(Isa::Portable));
+    }
+}
+
+/// A formula; evaluated, if it is one.
+pub fn expression(bytes: &[u8]) {
+    let Ok(text) = core::str::from_utf8(bytes) else {
+        return;
+    };
+    if let Ok(formula) = Expression::parse(text, &["x", "y", "z", "t"]) {
+        let mut out = [0.0; 100];
+        formula.evaluate(&mut out, |variable, start, values| {
+            for (index, value) in values.iter_mut().enumerate() {
+                *value = (start + index) as f64 - 10.0 * variable as f64;
+            }
+        });
+    }
+}
+
+/// A list of particles as text.
+pub fn csv(bytes: &[u8]) {
+    if let Ok(text) = core::str::from_utf8(bytes) {
+        drop(particle_list::parse_csv::<2>(text, "fuzz.csv"));
+        drop(particle_list::parse_csv::<3>(text, "fuzz.csv"));
+    }
+}
+
+/// A list of particles as PLY.
+pub fn ply(bytes: &[u8]) {
+    drop(ply::parse_ply::<2>(bytes, "fuzz.ply"));
+    drop(ply::parse_ply::<3>(bytes, "fuzz.ply"));
+}
+
+/// NumPy's archives and single arrays; a list of particles, if they are one.
+pub fn npz(bytes: &[u8]) {
+    drop(npz::read_array_from(bytes));
+    if let Ok(arrays) = npz::read_from(Cursor::new(bytes), MEMORY) {
+        drop(particle_list::from_arrays::<2>(&arrays));
+        drop(particle_list::from_arrays::<3>(&arrays));
+    }
+}
+
+/// A mesh; its inside is asked for, if it is closed.
+pub fn mesh(bytes: &[u8], ending: &str) {
+    if let Ok(mesh) = mesh_file::parse_mesh(bytes, &format!("fuzz.{ending}")) {
+        let (low, high) = mesh.bounds();
+        for part in [0.1, 0.5, 0.77] {
+            mesh.contains(core::array::from_fn(|axis| {
+                low[axis] + part * (high[axis] - low[axis])
+            }));
+        }
+    }
+}
+
+/// A checkpoint's file.
+pub fn checkpoint(bytes: &[u8]) {
+    drop(checkpoint::read(bytes, bytes.len() as u64));
+}
+
+/// A scene of some particles, a wall, a force by where they started and a gauge.
+const SMALL: &str = r#"
+dx = 0.1
+gravity = [0.0, -9.81]
+[domain]
+min = [0.0, 0.0]
+max = [1.0, 1.0]
+[materials.water]
+preset = "water"
+sound_speed = 10.0
+[materials.snow]
+preset = "snow"
+[[bodies]]
+material = "water"
+shape = { box = { min = [0.0, 0.0], max = [0.4, 0.3] } }
+[[bodies]]
+material = "snow"
+shape = { ball = { center = [0.7, 0.5], radius = 0.1 } }
+[[forces]]
+acceleration = ["X - x", "0"]
+[[probes]]
+name = "wall"
+pressure = { at = [1.0, 0.1] }
+"#;
+
+/// Arrays of a checkpoint: `bytes` are changes to a good one (which array, which number, what it becomes). A
+/// simulation that takes it must be able to take substeps, too.
+pub fn state(bytes: &[u8]) {
+    thread_local! {
+        static GOOD: LazyCell<Option<(Scene, Checkpoint)>> = const { LazyCell::new(|| {
+            let scene = Scene::parse(SMALL, "small.toml", &[]).ok()?;
+            let mut simulation = scene.build(Isa::Portable).ok()?.simulation;
+            simulation.advance_to(0.05).ok()?;
+            let checkpoint = simulation.checkpoint();
+            Some((scene, checkpoint))
+        }) };
+    }
+    GOOD.with(|good| {
+        let (scene, checkpoint) = good.as_ref().expect("the small scene runs");
+        let mut checkpoint = checkpoint.clone();
+        for change in bytes.as_chunks::<12>().0.iter().take(8) {
+            let [array, number, shift, kind, value @ ..] = *change;
+            let arrays = checkpoint.arrays.len();
+            let array = &mut checkpoint.arrays[usize::from(array) % arrays];
+            let length = array.values.len().max(1);
+            let at = (usize::from(number) << (shift % 4)) % length;
+            let bits = u64::from_le_bytes(value);
+            match kind % 4 {
+                0 => array.shape = vec![usize::from(number), bits as usize],
+                1 => truncate(&mut array.values, at),
+                _ => set(&mut array.values, at, bits),
+            }
+        }
+        let mut simulation = scene
+            .build(Isa::Portable)
+            .expect("the small scene is sound")
+            .simulation;
+        if simulation.resume(checkpoint).is_ok() {
+            for _ in 0..3 {
+                if simulation.substep().is_err() {
+                    break;
+                }
+            }
+        }
+    });
+}
+
+fn truncate(values: &mut Values, length: usize) {
+    match values {
+        Values::F32(values) => values.truncate(length),
+        Values::F64(values) => values.truncate(length),
+        Values::U32(values) => values.truncate(length),
+        Values::I32(values) => values.truncate(length),
+        Values::U64(values) => values.truncate(length),
+    }
+}
+
+fn set(values: &mut Values, at: usize, bits: u64) {
+    fn put<T>(values: &mut [T], at: usize, value: T) {
+        if let Some(old) = values.get_mut(at) {
+            *old = value;
+        }
+    }
+    match values {
+        Values::F32(values) => put(values, at, f32::from_bits(bits as u32)),
+        Values::F64(values) => put(values, at, f64::from_bits(bits)),
+        Values::U32(values) => put(values, at, bits as u32),
+        Values::I32(values) => put(values, at, bits as i32),
+        Values::U64(values) => put(values, at, bits),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Changes of a checkpoint that were found to matter, and random ones.
+    #[test]
+    fn no_state_makes_a_simulation_panic() {
+        state(&[]);
+        proptest!(ProptestConfig::with_cases(300), |(
+            bytes in proptest::collection::vec(any::<u8>(), 0..96)
+        )| state(&bytes));
+    }
+
+    #[test]
+    fn no_bytes_make_a_reader_panic() {
+        proptest!(ProptestConfig::with_cases(200), |(
+            bytes in proptest::collection::vec(any::<u8>(), 0..200)
+        )| {
+            for reader in [scene, expression, csv, ply, npz, checkpoint] {
+                reader(&bytes);
+            }
+            mesh(&bytes, "stl");
+            mesh(&bytes, "obj");
+        });
+    }
+}
