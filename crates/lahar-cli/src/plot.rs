@@ -183,6 +183,7 @@ fn probe_unit(column: &str) -> &'static str {
     match column {
         "pressure" => "[Pa]",
         "height" | "front" => "[m]",
+        _ if column.starts_with("velocity") => "[m/s]",
         _ => "[N; N/m in 2D]",
     }
 }

@@ -102,6 +102,7 @@ const VALIDATION: &[Builtin] = scenes! {
     "d1-martin-moyce" in "validation" 2 "Dam break of Martin and Moyce" "A column of water collapses.";
     "d2-koshizuka-oka" in "validation" 2 "Dam break of Koshizuka and Oka" "A column of water collapses in a short tank.";
     "d3-wall-impact" in "validation" 2 "Dam break that runs into a wall" "A dam break hits the end wall, where gauges are.";
+    "d6-column" in "validation" 3 "Bore that hits a column" "A dam break over a wet bed hits a square column.";
 };
 
 /// Scenes to measure speed by; not listed, but found by name.

@@ -403,6 +403,11 @@ const BROKEN: &[(&str, &str, &str)] = &[
         "probes = [{ name = \"p\", pressure = { radius = 0.1 } }]\n",
     ),
     (
+        "a velocity without a place",
+        "title = \"Column\"\n",
+        "probes = [{ name = \"p\", velocity = {} }]\n",
+    ),
+    (
         "a plate without a width",
         "title = \"Column\"\n",
         "probes = [{ name = \"p\", pressure = { at = [0.1, 0.1], normal = [1.0, 0.0] } }]\n",

@@ -21,7 +21,13 @@ fn every_scene_reads_and_builds() {
         let expected = |warning: &String| {
             warning.contains("visibly compressed") || warning.contains("fall apart into grains")
         };
-        if !follows || !built.warnings.iter().all(expected) {
+        // The bed of an experiment that could not be drained.
+        let wet = |warning: &String| warning.starts_with("body \"layer\" is 0.0100 m thin");
+        let sound = match builtin.name {
+            "d6-column" => built.warnings.iter().all(wet),
+            _ => follows && built.warnings.iter().all(expected),
+        };
+        if !sound {
             assert_eq!(built.warnings, [] as [&str; 0], "{}", builtin.name);
         }
         assert_eq!(

@@ -160,6 +160,78 @@ fn linear_pressure_in_3d_and_nothing_in_the_air() {
     assert_eq!(read[2], 0.0);
 }
 
+/// A velocity that is linear in the place is read exactly but for what holds the slope, inside, on a wall and
+/// in a corner; none where nothing is, and of an impact nothing far from what the particles have.
+fn velocities<T: Instance<D>, const D: usize>() {
+    // Shear, turn and stretch [1/s]: each component depends on all coordinates.
+    let gradient = |i: usize, j: usize| 1.0 + i as f64 - 0.7 * j as f64;
+    let exact = |x: [f64; D]| -> [f64; D] {
+        core::array::from_fn(|i| {
+            0.5 - i as f64 + (0..D).map(|j| gradient(i, j) * x[j]).sum::<f64>()
+        })
+    };
+    let gauge = |at| {
+        probe(Gauge::Velocity {
+            at,
+            radius: 2.0 * DX,
+        })
+    };
+    let mut on_wall = [-0.7; D];
+    on_wall[1] = -1.0;
+    let places = [[-0.612; D], on_wall, [-1.0; D], [-0.1; D]];
+    let mut batch = column([-1.0; D], [-0.4; D], 0.4, |_| 1000.0);
+    batch.velocity = batch.position.iter().map(|&x| exact(x)).collect();
+    let read = |setup: Setup<D>, batch: &ParticleBatch<D>| -> Vec<Vec<f64>> {
+        let mut simulation = Simulation::<T, D>::new(setup, core::slice::from_ref(batch)).unwrap();
+        let read = simulation.take_probe_samples();
+        let values = read.iter().map(|probe| probe.samples[0].values.clone());
+        assert!(
+            read.iter()
+                .all(|probe| probe.columns[D - 1].starts_with("velocity_"))
+        );
+        values.collect()
+    };
+    let values = read(tank(places.map(gauge).into()), &batch);
+    for (values, x) in values.iter().zip(places).take(3) {
+        for (i, (read, exact)) in values.iter().zip(exact(x)).enumerate() {
+            let slope: f64 = (0..D).map(|j| gradient(i, j).abs()).sum();
+            assert!(
+                (read - exact).abs() < 0.004 * slope * DX,
+                "{x:?}: {read} for {exact}"
+            );
+        }
+    }
+    assert_eq!(values[3], [0.0; D]);
+
+    // One half of the fluid runs into the other: no place reads more than half of the jump beyond either.
+    batch.velocity = batch
+        .position
+        .iter()
+        .map(|x| {
+            let mut v = [0.0; D];
+            v[0] = if x[0] < -0.7 { 2.0 } else { 1.0 };
+            v
+        })
+        .collect();
+    let across: Vec<_> = (0..20)
+        .map(|k| {
+            let mut at = on_wall;
+            at[0] = -0.8 + 0.01 * f64::from(k);
+            gauge(at)
+        })
+        .collect();
+    for values in read(tank(across), &batch) {
+        assert!((0.5..=2.5).contains(&values[0]), "{values:?}");
+        assert!(values[1..].iter().all(|v| *v == 0.0), "{values:?}");
+    }
+}
+
+#[test]
+fn linear_velocity() {
+    velocities::<f64, 2>();
+    velocities::<f32, 3>();
+}
+
 /// A flat surface is found where it is, beside walls too; the mean is the filled volume's.
 #[test]
 fn heights() {
@@ -362,6 +434,11 @@ fn what_cannot_be_read_is_refused_by_its_key() {
         depth: 0.1,
     };
     assert_eq!(refused(probe(sideways)), "probes.probe.front");
+    let flat = Gauge::Velocity {
+        at: [0.0; 2],
+        radius: 0.0,
+    };
+    assert_eq!(refused(probe(flat)), "probes.probe.velocity");
     let nowhere = Gauge::Force { on: "back".into() };
     assert_eq!(refused(probe(nowhere)), "probes.probe.force");
 }

@@ -236,6 +236,7 @@ pub(crate) const SECTIONS: &[&Section] = &[
     &DRAG,
     &PROBE,
     &PRESSURE,
+    &VELOCITY_PROBE,
     &HEIGHT,
     &FRONT,
     &FORCE_PROBE,
@@ -1547,6 +1548,13 @@ pub(crate) static PROBE: Section = Section {
             "Pressure at a point, or its mean over a plate.",
         ),
         key(
+            "velocity",
+            Kind::Table(&VELOCITY_PROBE),
+            "",
+            Words("–"),
+            "Velocity at a point.",
+        ),
+        key(
             "height",
             Kind::Table(&HEIGHT),
             "",
@@ -1601,6 +1609,21 @@ pub(crate) static PRESSURE: Section = Section {
             "m",
             Words("a point, no plate"),
             "Length of the plate in 2D, diameter of the disc in 3D.",
+        ),
+    ]],
+};
+
+pub(crate) static VELOCITY_PROBE: Section = Section {
+    name: "velocity at a point",
+    header: "velocity = { .. } in [[probes]]",
+    keys: &[&[
+        key("at", Kind::Vector, "m", Required, "The point."),
+        key(
+            "radius",
+            Kind::Number(Bound::Positive),
+            "m",
+            Words("2 `dx`"),
+            "How far away particles count.",
         ),
     ]],
 };

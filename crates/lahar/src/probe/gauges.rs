@@ -14,8 +14,8 @@ const DRIFT: f64 = 1.0;
 /// where there are particles all around, and keeps two of them from setting a slope.
 const SLOPE_RIDGE: f64 = 1e-4;
 
-/// Part of the range of pressures around a gauge by which it may read more, or less: on a wall a linear
-/// pressure is a quarter of the range above its highest particle.
+/// Part of the range of what particles around a gauge have by which it may read more, or less: on a wall a
+/// linear pressure is a quarter of the range above its highest particle.
 const MOST_BEYOND: f64 = 0.5;
 
 /// Part of a cell that counts as inside the surface.
@@ -39,6 +39,7 @@ pub(super) fn measure<T: Instance<D>, const D: usize>(
                 .sum();
             sum / points.len() as f64
         }
+        Gauge::Velocity { at, radius } => return velocity(simulation, at, radius).into(),
         Gauge::Height {
             up,
             column: Some(at),
@@ -167,19 +168,69 @@ fn weight(s: f64) -> f64 {
     }
 }
 
-/// (16): the pressure at a point \[Pa\], from a plane fitted to the particles around it. A mean
-/// alone would be the pressure where the particles are: on a wall, half a radius inside.
+/// The pressure at a point \[Pa\].
 fn pressure<T: Instance<D>, const D: usize>(
     simulation: &Simulation<T, D>,
     at: [f64; D],
     radius: f64,
 ) -> f64 {
+    let fit = fitted(simulation, at, radius, |_, _, pressure| [pressure]);
+    fit.map_or(0.0, |[fit]| {
+        // What is pressed everywhere does not pull in between.
+        let least = if fit.low < 0.0 {
+            f64::NEG_INFINITY
+        } else {
+            0.0
+        };
+        fit.held().max(least)
+    })
+}
+
+/// The velocity at a point \[m/s\].
+fn velocity<T: Instance<D>, const D: usize>(
+    simulation: &Simulation<T, D>,
+    at: [f64; D],
+    radius: f64,
+) -> [f64; D] {
+    let velocity = |group: &Group<T, D>, row: usize, _| {
+        core::array::from_fn(|axis| group.columns[Layout::velocity(D) + axis][row].to_f64())
+    };
+    let fit = fitted(simulation, at, radius, velocity);
+    fit.map_or([0.0; D], |axes| axes.map(Fitted::held))
+}
+
+/// What a plane through what particles have says of the point in their midst.
+#[derive(Clone, Copy, Debug)]
+struct Fitted {
+    value: f64,
+    /// The least and the most that a particle has.
+    low: f64,
+    high: f64,
+}
+
+impl Fitted {
+    /// A plane is no fit of an impact: what it says beyond what is there is cut off.
+    fn held(self) -> f64 {
+        let beyond = MOST_BEYOND * (self.high - self.low);
+        self.value.clamp(self.low - beyond, self.high + beyond)
+    }
+}
+
+/// (16): `quantities` of particles at a point, from planes fitted to those around it; `None` if there are
+/// none. A mean alone would be what is where the particles are: on a wall, half a radius inside. Quantities
+/// are asked of a group, a row and its Cauchy pressure \[Pa\].
+fn fitted<T: Instance<D>, const D: usize, const N: usize>(
+    simulation: &Simulation<T, D>,
+    at: [f64; D],
+    radius: f64,
+    quantities: impl Fn(&Group<T, D>, usize, f64) -> [f64; N],
+) -> Option<[Fitted; N]> {
     let x = simulation.to_cells(at);
     let reach = radius / simulation.setup.dx;
-    // Normal equations of p(d) = c₀ + c·d: the matrix and the right side.
+    // Normal equations of q(d) = c₀ + c·d: the matrix and, for each quantity, the right side.
     let mut sums = [[0.0; 4]; 4];
-    let mut right = [0.0; 4];
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut right = [[0.0; 4]; N];
+    let mut range = [(f64::INFINITY, f64::NEG_INFINITY); N];
     simulation.near(
         x,
         reach,
@@ -192,32 +243,34 @@ fn pressure<T: Instance<D>, const D: usize>(
                 return;
             }
             let (volume, pressure) = volume_and_pressure(group, row);
-            (low, high) = (low.min(pressure), high.max(pressure));
+            let q = quantities(group, row, pressure);
             let w = volume * (1.0 - squared) * (1.0 - squared);
             let term = |i: usize| if i == 0 { 1.0 } else { d[i - 1] };
             for i in 0..=D {
                 for j in 0..=D {
                     sums[i][j] += w * term(i) * term(j); // (16)
                 }
-                right[i] += w * term(i) * pressure; // (16)
+                for (right, q) in right.iter_mut().zip(q) {
+                    right[i] += w * term(i) * q; // (16)
+                }
+            }
+            for ((low, high), q) in range.iter_mut().zip(q) {
+                (*low, *high) = (low.min(q), high.max(q));
             }
         },
     );
     let total = sums[0][0];
     if total == 0.0 {
-        return 0.0;
+        return None;
     }
     for (i, row) in sums.iter_mut().enumerate().take(D + 1).skip(1) {
         row[i] += SLOPE_RIDGE * total;
     }
-    // A plane is no fit of an impact: what it says beyond what is there is cut off.
-    let beyond = MOST_BEYOND * (high - low);
-    let lowest = if low < 0.0 {
-        low - beyond
-    } else {
-        (low - beyond).max(0.0)
-    };
-    first_unknown::<D>(sums, right).clamp(lowest, high + beyond)
+    Some(core::array::from_fn(|k| Fitted {
+        value: first_unknown::<D>(sums, right[k]),
+        low: range[k].0,
+        high: range[k].1,
+    }))
 }
 
 /// J V⁰ \[m³\] and Cauchy pressure \[Pa\] of a particle.

@@ -1,5 +1,5 @@
-//! Gauges in the scene: pressure at a place, the height of a surface, how far a front has come, the
-//! force on a boundary.
+//! Gauges in the scene: pressure and velocity at a place, the height of a surface, how far a front has
+//! come, the force on a boundary.
 //!
 //! ```text
 //! substep ─► is one due? ─► gauges.rs measures ─► kept ─► Simulate::take_probe_samples
@@ -26,7 +26,8 @@ pub struct Probe<const D: usize> {
     pub gauge: Gauge<D>,
 }
 
-/// What a probe measures. Only [`Gauge::Pressure`] looks at the material law.
+/// What a probe measures. Only [`Gauge::Pressure`] and [`Gauge::Velocity`], which weighs by volume, look at
+/// the material law.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Gauge<const D: usize> {
     /// Cauchy pressure \[Pa\] by (16), 0 where there is no particle. On a wall on its plane, what a sensor
@@ -38,6 +39,13 @@ pub enum Gauge<const D: usize> {
         radius: f64,
         /// The plate it is averaged over, with `at` in its middle; `None`: the point alone.
         plate: Option<Plate<D>>,
+    },
+    /// Velocity \[m/s\] by (16), a number an axis; 0 where there is no particle.
+    Velocity {
+        /// Where \[m\].
+        at: [f64; D],
+        /// How far it looks \[m\].
+        radius: f64,
     },
     /// Where on an axis the surface of the material is \[m\].
     Height {
@@ -76,10 +84,12 @@ pub struct Plate<const D: usize> {
 }
 
 impl<const D: usize> Gauge<D> {
-    /// What its numbers are called: "pressure", "height", "front"; "force_x", "force_y", "force_z".
+    /// What its numbers are called: "pressure", "height", "front"; "velocity_x", "velocity_y",
+    /// "velocity_z"; "force_x", "force_y", "force_z".
     pub fn columns(&self) -> Vec<&'static str> {
         match self {
             Self::Pressure { .. } => vec!["pressure"],
+            Self::Velocity { .. } => ["velocity_x", "velocity_y", "velocity_z"][..D].to_vec(),
             Self::Height { .. } => vec!["height"],
             Self::Front { .. } => vec!["front"],
             Self::Force { .. } => ["force_x", "force_y", "force_z"][..D].to_vec(),
@@ -156,6 +166,11 @@ pub(crate) fn check<const D: usize>(
                         && positive(plate.normal.iter().map(|n| n * n).sum()))
                 {
                     return wrong("pressure", "needs a normal and a width above 0");
+                }
+            }
+            Gauge::Velocity { at, radius } => {
+                if !finite(at) || !positive(*radius) {
+                    return wrong("velocity", "needs a place and a radius above 0");
                 }
             }
             Gauge::Height { up, column } => {
