@@ -1,10 +1,13 @@
 //! What may be written on the command line.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::{Parser, Subcommand};
 use lahar::Isa;
 use lahar_io::scene::Comparison;
+
+use crate::recorded::Frames;
 
 /// Fluids, and the solids they meet, simulated by the Moving Least Squares Material Point Method.
 ///
@@ -47,6 +50,13 @@ pub(crate) enum Command {
     Show(Show),
     /// Write a commented scene to start from
     New(New),
+    /// Make surface meshes of a run's particles, by material
+    #[cfg(feature = "mesh")]
+    Mesh(Mesh),
+    /// Draw a run's frames: pictures, and a film
+    Render(Render),
+    /// Write a page of HTML that tells how a run went, with pictures and plots in it
+    Report(Report),
     /// Plot what runs have measured over time: energies, momenta, volume, speed, time step, probes
     Plot(Plot),
     /// Run physics cases and compare with exact solutions, experiments and other programs
@@ -209,6 +219,126 @@ pub(crate) struct New {
     pub(crate) file: PathBuf,
 }
 
+/// Options of `mesh`.
+#[cfg(feature = "mesh")]
+#[derive(Debug, clap::Args)]
+pub(crate) struct Mesh {
+    /// A folder that `lahar run` has written, of a run in 3D with npz frames
+    #[arg(value_name = "DIR")]
+    pub(crate) run: PathBuf,
+
+    /// The folder to write; meshes/ in the run's folder if not given
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// The frames, by number: 12, 0..60, 0..60:5 (every fifth) or 10..; all if not given
+    #[arg(
+        long,
+        value_name = "FRAMES",
+        default_value = "0..",
+        hide_default_value = true
+    )]
+    pub(crate) frames: Frames,
+
+    /// The materials; all if not given
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) materials: Vec<String>,
+
+    /// What to write of each: ply, obj, vtk
+    #[arg(
+        long,
+        value_name = "FORMATS",
+        value_delimiter = ',',
+        default_value = "ply"
+    )]
+    pub(crate) format: Vec<String>,
+
+    /// Passes of smoothing; 0: as it is cut, with steps
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(0..=1000))]
+    pub(crate) smoothing: u32,
+
+    /// Edge of the cubes that the surface is cut from, in spacings of particles: smaller is finer
+    #[arg(long, value_name = "SIZE", default_value = "0.5", value_parser = positive)]
+    pub(crate) cube: f64,
+}
+
+/// Options of `render`.
+#[derive(Debug, Default, clap::Args)]
+pub(crate) struct Render {
+    /// A folder that `lahar run` has written with npz frames; it need not have come to its end
+    #[arg(value_name = "DIR")]
+    pub(crate) run: PathBuf,
+
+    /// The folder to write; render/ in the run's folder if not given
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// The frames, by number: 12, 0..60, 0..60:5 (every fifth) or 10..; all if not given
+    #[arg(
+        long,
+        value_name = "FRAMES",
+        default_value = "0..",
+        hide_default_value = true
+    )]
+    pub(crate) frames: Frames,
+
+    /// Make a film, too: video.gif, and video.mp4 where ffmpeg is installed
+    #[arg(long)]
+    pub(crate) video: bool,
+
+    /// Keep no pictures: the film only
+    #[arg(long, requires = "video")]
+    pub(crate) no_images: bool,
+
+    /// Width and height in pixels; the scene's choice if not given
+    #[arg(long, value_name = "WIDTHxHEIGHT")]
+    pub(crate) size: Option<Size>,
+
+    /// From the scene to the camera, in 3D, as in `--camera 1,0.5,2`; more by `--set camera.KEY=VALUE`
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
+    pub(crate) camera: Option<String>,
+
+    /// What colours mean: material, body, speed, pressure, density, J
+    #[arg(long, value_name = "WHAT")]
+    pub(crate) color_by: Option<String>,
+
+    /// Set a key of the scene, as in `--set camera.height=2`
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+/// Pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Size(pub(crate) [u32; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |text: &str| {
+            text.trim()
+                .parse()
+                .ok()
+                .filter(|n| (16..=16384).contains(n))
+        };
+        text.split_once(['x', 'X', '×'])
+            .and_then(|(width, height)| Some(Self([side(width)?, side(height)?])))
+            .ok_or_else(|| "write it as 1280x720, each from 16 to 16384".to_owned())
+    }
+}
+
+/// Options of `report`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Report {
+    /// A folder that `lahar run` has written
+    #[arg(value_name = "DIR")]
+    pub(crate) run: PathBuf,
+
+    /// The file to write; report.html in the run's folder if not given
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
 /// Options of `plot`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Plot {
@@ -352,6 +482,14 @@ mod tests {
     #[test]
     fn the_definitions_agree() {
         Args::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes() {
+        assert_eq!("1280x720".parse(), Ok(Size([1280, 720])));
+        for wrong in ["1280", "8x8", "x", "-1x20", "20000x20"] {
+            assert!(wrong.parse::<Size>().is_err(), "{wrong}");
+        }
     }
 
     #[test]

@@ -13,10 +13,16 @@ mod completions;
 mod error;
 mod interrupt;
 mod list;
+mod looks;
+#[cfg(feature = "mesh")]
+mod mesh;
 mod new;
+mod page;
 mod plan;
 mod plot;
 mod progress;
+mod recorded;
+mod render;
 mod report;
 mod resume;
 mod run;
@@ -68,6 +74,10 @@ fn execute(args: Args) -> Result<ExitCode, CliError> {
         Some(Command::List(list)) => list::list(list.json),
         Some(Command::Show(show)) => show::show(&show),
         Some(Command::New(args)) => new::new(&args.file),
+        #[cfg(feature = "mesh")]
+        Some(Command::Mesh(args)) => mesh::mesh(&args),
+        Some(Command::Render(args)) => render::render(&args),
+        Some(Command::Report(args)) => page::report(&args),
         Some(Command::Plot(plot)) => plot::plot(&plot),
         Some(Command::Bench(args)) => bench::bench(&args),
         Some(Command::Validate(args)) => validate::validate(&args),

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use lahar::{Field, Isa, particles};
 use lahar_io::checkpoint::Start;
 use lahar_io::export::{FORMATS, Format};
-use lahar_io::image::{self, Camera, Colouring, Renderer, Scenery, Style};
+use lahar_io::image::{self, Scenery};
 use lahar_io::output::{Film, Pictures, RunFolder, film_pace};
 use lahar_io::scene::Scene;
 use serde::{Deserialize, Serialize};
@@ -13,9 +13,7 @@ use serde_json::json;
 
 use crate::args;
 use crate::error::CliError;
-
-/// Width of a film \[pixels\]: a film of all frames is to stay a few megabytes.
-const FILM_WIDTH: u32 = 640;
+use crate::looks;
 
 /// A run, checked.
 pub(crate) struct Plan {
@@ -259,99 +257,21 @@ impl Plan {
     pub(crate) fn pictures(&self, scenery: &Scenery) -> Option<Pictures> {
         let [width, height] = self.scene.output.picture_size;
         (self.outputs.formats.png > 0).then(|| Pictures {
-            renderer: self.renderer(scenery, width, height),
+            renderer: looks::renderer(&self.scene, scenery, [width, height]),
             every: self.outputs.formats.png,
         })
     }
 
     /// A film, if wanted.
     pub(crate) fn film(&self, scenery: &Scenery) -> Option<Film> {
-        let [width, height] = self.scene.output.picture_size;
-        let film_width = width.min(FILM_WIDTH);
-        let film_height =
-            (f64::from(height) * f64::from(film_width) / f64::from(width)).round() as u32;
         self.outputs.formats.gif.then(|| Film {
-            renderer: self.renderer(scenery, film_width, film_height),
+            renderer: looks::renderer(
+                &self.scene,
+                scenery,
+                looks::film_size(self.scene.output.picture_size),
+            ),
             pace: film_pace(self.scene.frame_rate, self.outputs.film_frames),
         })
-    }
-
-    fn renderer(&self, scenery: &Scenery, width: u32, height: u32) -> Renderer {
-        let camera = &self.scene.camera;
-        let style = Style {
-            width,
-            height,
-            colouring: match camera.color_by.as_str() {
-                "body" => Colouring::Body,
-                "speed" => Colouring::Speed(scenery.speed.max(1e-3)),
-                "pressure" => Colouring::Pressure(0.0, self.pressure_scale(scenery)),
-                "density" => {
-                    let squeeze = self.squeeze(scenery);
-                    let densities = || self.scene.materials.iter().map(|m| m.density);
-                    let least = densities().fold(f64::INFINITY, f64::min);
-                    let most = densities().fold(0.0, f64::max);
-                    Colouring::Density(least * (1.0 - squeeze), most * (1.0 + squeeze))
-                }
-                "J" => {
-                    let squeeze = self.squeeze(scenery);
-                    Colouring::Jacobian(1.0 - squeeze, 1.0 + squeeze)
-                }
-                _ => Colouring::Material,
-            },
-            ..Style::default()
-        };
-        let mut scenery = scenery.clone();
-        scenery.background = camera.background;
-        for (colour, material) in scenery.colours.iter_mut().zip(&self.scene.materials) {
-            *colour = material.color.unwrap_or(*colour);
-        }
-        scenery.bodies = self.scene.bodies.iter().map(|body| body.color).collect();
-        let mut renderer = Renderer::new(scenery.clone(), style);
-        if camera.framed {
-            renderer = renderer.with_frame(camera.center, camera.height);
-        }
-        let aspect = f64::from(width) / f64::from(height);
-        let direction = camera.direction.map(|x| x as f32);
-        if direction.iter().all(|x| *x == 0.0) {
-            return renderer;
-        }
-        let angle = camera.field_of_view.to_radians() as f32;
-        if camera.framed {
-            return renderer.with_camera(Camera::framing(
-                camera.center,
-                camera.height,
-                scenery.up,
-                direction,
-                angle,
-            ));
-        }
-        renderer.with_camera(Camera::showing_from(
-            scenery.bounds,
-            scenery.up,
-            aspect as f32,
-            direction,
-            angle,
-        ))
-    }
-
-    /// What a column of half the scene's height weighs on its foot \[Pa\].
-    fn pressure_scale(&self, scenery: &Scenery) -> f64 {
-        let density = self
-            .scene
-            .materials
-            .iter()
-            .map(|material| material.density)
-            .fold(0.0, f64::max);
-        (density * scenery.speed * scenery.speed * 0.5).max(f64::MIN_POSITIVE)
-    }
-
-    /// By how much of its volume such a column compresses its foot, in the softest material.
-    fn squeeze(&self, scenery: &Scenery) -> f64 {
-        let softest = (self.scene.materials.iter())
-            .map(|material| material.wave_speed)
-            .filter(|speed| *speed > 0.0)
-            .fold(f64::INFINITY, f64::min);
-        (0.5 * (scenery.speed / softest).powi(2)).clamp(1e-3, 0.5)
     }
 }
 

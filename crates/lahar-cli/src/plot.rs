@@ -101,13 +101,26 @@ pub(crate) fn plot(args: &args::Plot) -> Result<ExitCode, CliError> {
 
 /// Draws all figures of `runs`, each with its name, into `folder`; returns the files.
 pub(crate) fn draw(runs: &[(String, PathBuf)], folder: &Path) -> Result<Vec<PathBuf>, CliError> {
+    let figures = figures(runs)?;
+    let cannot = |what: String| CliError::Machine(format!("{}: {what}", folder.display()));
+    fs::create_dir_all(folder).map_err(|error| cannot(format!("cannot make it: {error}")))?;
+    let mut files = Vec::new();
+    for (name, svg) in figures {
+        let path = folder.join(name).with_extension("svg");
+        fs::write(&path, svg)
+            .map_err(|error| cannot(format!("cannot write {}: {error}", path.display())))?;
+        files.push(path);
+    }
+    Ok(files)
+}
+
+/// All figures of `runs`, each with its name, as SVG with a name.
+pub(crate) fn figures(runs: &[(String, PathBuf)]) -> Result<Vec<(String, String)>, CliError> {
     let mut tables = Vec::new();
     for (name, run) in runs {
         tables.push((name.as_str(), Table::read(&run.join("diagnostics.csv"))?));
     }
-    let cannot = |what: String| CliError::Machine(format!("{}: {what}", folder.display()));
-    fs::create_dir_all(folder).map_err(|error| cannot(format!("cannot make it: {error}")))?;
-    let mut files = Vec::new();
+    let mut figures = Vec::new();
     for figure in FIGURES {
         let lines = figure.lines(&tables);
         if lines.is_empty() {
@@ -121,19 +134,13 @@ pub(crate) fn draw(runs: &[(String, PathBuf)], folder: &Path) -> Result<Vec<Path
         };
         // A run that ended before its second frame may have nothing to draw.
         let Ok(svg) = plot.svg() else { continue };
-        let path = folder.join(figure.file).with_extension("svg");
-        fs::write(&path, svg)
-            .map_err(|error| cannot(format!("cannot write {}: {error}", path.display())))?;
-        files.push(path);
+        figures.push((figure.file.to_owned(), svg));
     }
     for (probe, plot) in probe_plots(runs)? {
         let Ok(svg) = plot.svg() else { continue };
-        let path = folder.join(format!("probe-{probe}.svg"));
-        fs::write(&path, svg)
-            .map_err(|error| cannot(format!("cannot write {}: {error}", path.display())))?;
-        files.push(path);
+        figures.push((format!("probe-{probe}"), svg));
     }
-    Ok(files)
+    Ok(figures)
 }
 
 /// A plot for each probe, by name: a line for each of its numbers and each run that has it.

@@ -62,15 +62,17 @@ impl Progress {
             standing.advance.limit.name(),
             duration(left),
         );
+        self.at(standing.frame, words);
+    }
+
+    /// After `frame` frames, with what there is to say.
+    pub(crate) fn at(&mut self, frame: u64, words: String) {
         if let Some(bar) = &self.bar {
-            bar.set_position(standing.frame);
+            bar.set_position(frame);
             bar.set_message(words);
-        } else if standing.frame * LINES / self.frames.max(1) > self.told {
-            self.told = standing.frame * LINES / self.frames.max(1);
-            terminal::note(&format!(
-                "frame {}/{}  {words}",
-                standing.frame, self.frames
-            ));
+        } else if frame * LINES / self.frames.max(1) > self.told {
+            self.told = frame * LINES / self.frames.max(1);
+            terminal::note(&format!("frame {frame}/{}  {words}", self.frames));
         }
     }
 

@@ -727,3 +727,91 @@ fn bench_says_what_is_wrong() {
         errors(&output)
     );
 }
+
+#[test]
+fn a_finished_run_is_drawn_and_told_of() {
+    let here = here();
+    code(
+        &run(here.path(), &["--frames=3", "--format=npz", "-o", "r"]),
+        0,
+    );
+    let words = ["render", "r", "--frames=1..3:2", "--video", "--size=64x48"];
+    let output = lahar(here.path(), &words);
+    code(&output, 0);
+    assert!(errors(&output).contains("video: GIF by lahar"));
+    let drawn = names(&here.path().join("r/render"));
+    assert_eq!(drawn[..3], ["000001.png", "000003.png", "video.gif"]);
+
+    code(&lahar(here.path(), &["report", "r"]), 0);
+    let page = std::fs::read_to_string(here.path().join("r/report.html")).unwrap();
+    for part in [
+        "<h1>Dam break</h1>",
+        "data:image/png;base64,",
+        "data:image/gif;base64,",
+        "<svg",
+        "particle-steps/s",
+        "Retries",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    // Nothing is fetched: the only addresses are names of XML's dialects.
+    assert!(!page.contains("href=") && !page.contains("src=\"http"));
+
+    for (words, what) in [
+        (&["render", "r", "--frames=7"][..], "0 to 3"),
+        (&["render", "r", "--color-by=smell"], "color_by"),
+        (&["render", "nowhere"], "not a run's folder"),
+        (&["report", "nowhere"], "not a run's folder"),
+    ] {
+        let output = lahar(here.path(), words);
+        code(&output, 2);
+        assert!(errors(&output).contains(what), "{}", errors(&output));
+    }
+    code(
+        &run(here.path(), &["--frames=1", "--format=none", "-o", "bare"]),
+        0,
+    );
+    let output = lahar(here.path(), &["render", "bare"]);
+    code(&output, 2);
+    assert!(errors(&output).contains("--format npz"));
+    // There is still something to tell.
+    code(&lahar(here.path(), &["report", "bare"]), 0);
+}
+
+#[cfg(feature = "mesh")]
+#[test]
+fn surfaces_are_a_folder_a_material() {
+    let here = here();
+    let words = ["run", "dam-break-3d", "--set", "dx=0.1", "--threads=1"];
+    let more = ["--frames=1", "--format=npz", "-o", "r"];
+    code(&lahar(here.path(), &[&words[..], &more].concat()), 0);
+    let words = ["mesh", "r", "--format=ply,obj,vtk"];
+    code(&lahar(here.path(), &words), 0);
+    let meshes = here.path().join("r/meshes");
+    assert_eq!(names(&meshes), ["water", "water.pvd"]);
+    assert_eq!(
+        names(&meshes.join("water")),
+        [
+            "000000.obj",
+            "000000.ply",
+            "000000.vtp",
+            "000001.obj",
+            "000001.ply",
+            "000001.vtp"
+        ]
+    );
+    code(
+        &run(here.path(), &["--frames=0", "--format=npz", "-o", "flat"]),
+        0,
+    );
+    for (words, what) in [
+        (&["mesh", "flat"][..], "2D"),
+        (&["mesh", "r", "--materials=wine"], "there are water"),
+        (&["mesh", "r", "--format=stl"], "ply, obj, vtk"),
+        (&["mesh", "r", "--cube=0"], "above 0"),
+    ] {
+        let output = lahar(here.path(), words);
+        code(&output, 2);
+        assert!(errors(&output).contains(what), "{}", errors(&output));
+    }
+}

@@ -19,4 +19,6 @@ mod ply;
 pub mod sampling;
 pub mod scene;
 pub mod shape;
+#[cfg(feature = "surface")]
+pub mod surface;
 pub mod validate;

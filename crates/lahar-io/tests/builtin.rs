@@ -225,3 +225,14 @@ fn the_mesh_of_the_knot_is_its_formula() {
     }
     assert!(std::fs::read_to_string(path).unwrap() == trefoil());
 }
+
+#[test]
+fn a_recorded_scene_is_the_scene() {
+    for builtin in builtin::list().iter().chain(builtin::validation()) {
+        let scene = Scene::load(builtin.name, &[]).unwrap();
+        let resolved = scene.resolved();
+        let again =
+            Scene::recorded(&resolved, builtin.name, &[]).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(again.resolved(), resolved, "{}", builtin.name);
+    }
+}

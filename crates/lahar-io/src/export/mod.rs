@@ -10,6 +10,7 @@
 //! by 1 on the diagonal.
 
 mod bgeo;
+mod mesh;
 mod ply;
 mod rows;
 mod series;
@@ -23,6 +24,7 @@ use lahar::{Data, Field, Snapshot};
 
 use crate::npz::{Compression, NpzWriter};
 
+pub use mesh::{MeshFormat, Triangles};
 pub(crate) use series::TimeSeries;
 
 /// A format of particles.

@@ -9,6 +9,7 @@ use std::io::{self, Write};
 use lahar::particles::FIELDS;
 use lahar::{Data, Field, Snapshot};
 
+use super::mesh::Triangles;
 use super::rows::{Column, LITTLE_ENDIAN, in_space, write_rows};
 
 pub(super) fn write<W: Write>(mut writer: W, snapshot: &Snapshot) -> io::Result<W> {
@@ -72,10 +73,63 @@ _"#,
     for column in columns {
         block(&mut writer, column)?;
     }
-    writer.write_all(b"\n</AppendedData>\n</VTKFile>\n")?;
+    writer.write_all(END)?;
     writer.flush()?;
     Ok(writer)
 }
+
+/// A mesh, its places in single precision.
+pub(super) fn write_triangles(
+    writer: &mut impl Write,
+    mesh: Triangles<'_>,
+    time: f64,
+) -> io::Result<()> {
+    let (vertices, triangles) = (mesh.vertices.len(), mesh.triangles.len());
+    let mut arrays = Arrays {
+        offset: 0,
+        count: vertices as u64,
+    };
+    let points = arrays.tag("Float32", "position", 3, 3 * SINGLE);
+    arrays.count = triangles as u64;
+    let polygons = arrays.tag("Int64", "connectivity", 1, 3 * WHOLE_NUMBER)
+        + &arrays.tag("Int64", "offsets", 1, WHOLE_NUMBER);
+    write!(
+        writer,
+        r#"<?xml version="1.0"?>
+<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+<PolyData>
+<FieldData>
+<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{time:?}</DataArray>
+</FieldData>
+<Piece NumberOfPoints="{vertices}" NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="{triangles}">
+<Points>
+{points}</Points>
+<Polys>
+{polygons}</Polys>
+</Piece>
+</PolyData>
+<AppendedData encoding="raw">
+_"#
+    )?;
+    writer.write_all(&(vertices as u64 * 3 * SINGLE).to_le_bytes())?;
+    for x in mesh.vertices.iter().flatten() {
+        writer.write_all(&(*x as f32).to_le_bytes())?;
+    }
+    writer.write_all(&(triangles as u64 * 3 * WHOLE_NUMBER).to_le_bytes())?;
+    for index in mesh.triangles.iter().flatten() {
+        writer.write_all(&u64::from(*index).to_le_bytes())?;
+    }
+    writer.write_all(&(triangles as u64 * WHOLE_NUMBER).to_le_bytes())?;
+    for triangle in 1..=triangles as u64 {
+        writer.write_all(&(3 * triangle).to_le_bytes())?;
+    }
+    writer.write_all(END)
+}
+
+const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
+
+/// Bytes of a `Float32`.
+const SINGLE: u64 = 4;
 
 /// Bytes of an `Int64`.
 const WHOLE_NUMBER: u64 = 8;

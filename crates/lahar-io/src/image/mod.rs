@@ -11,6 +11,7 @@ mod beside;
 mod camera;
 mod drawn;
 mod film;
+mod mp4;
 mod palette;
 mod plane;
 mod space;
@@ -19,7 +20,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use crate::scene::ColliderInfo;
+use crate::scene::{ColliderInfo, Scene};
 use drawn::Drawn;
 use lahar::boundary::Placed;
 use lahar::{Collider, Field, Simulate, Snapshot};
@@ -27,6 +28,7 @@ use lahar::{Collider, Field, Simulate, Snapshot};
 pub use beside::beside;
 pub use camera::Camera;
 pub use film::Film;
+pub use mp4::Mp4;
 pub use palette::{
     BACKGROUND, COLLIDER, Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, model_colours,
 };
@@ -130,22 +132,57 @@ impl Scenery {
     /// What can be seen from the simulation at its start; `models` are the names of the materials' models, by
     /// index ("fluid", "snow", ...), which choose the colours.
     pub fn of(simulation: &dyn Simulate, models: &[&str]) -> Self {
-        let dimension = simulation.dimension();
-        let gravity = simulation.gravity();
+        let bounds = match simulation.domain() {
+            Some(domain) => Bounds::Domain(domain),
+            None => Bounds::Around(&simulation.snapshot(&[Field::Position])),
+        };
+        let (dimension, dx) = (simulation.dimension(), simulation.dx());
+        Self::new(dimension, bounds, simulation.gravity(), dx, models)
+    }
+
+    /// What can be seen of a run; `first` is a frame of it, the earlier the better. Gravity that is a formula pulls
+    /// down the second axis for who looks at it.
+    pub fn recorded(scene: &Scene, first: &Snapshot) -> Self {
+        let resolved = scene.resolved();
+        let bounds = match resolved.get("domain") {
+            Some(_) => Bounds::Domain(scene.bounds()),
+            None => Bounds::Around(first),
+        };
+        let mut gravity = [0.0; 3];
+        let given = resolved["gravity"].as_array();
+        for (own, value) in gravity.iter_mut().zip(given.into_iter().flatten()) {
+            *own = value.as_f64().unwrap_or_default();
+        }
+        let models: Vec<&str> = (scene.materials.iter())
+            .map(|material| material.model.as_str())
+            .collect();
+        let dx = resolved["dx"].as_f64().unwrap_or_default();
+        Self::new(scene.dimension, bounds, gravity, dx, &models).with_colliders(&scene.colliders)
+    }
+
+    fn new(
+        dimension: usize,
+        bounds: Bounds<'_>,
+        gravity: [f64; 3],
+        dx: f64,
+        models: &[&str],
+    ) -> Self {
         let pull = gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
         let up = (0..dimension)
             .max_by(|&a, &b| gravity[a].abs().total_cmp(&gravity[b].abs()))
             .filter(|_| pull > 0.0)
             .unwrap_or(1);
-        let bounds = simulation
-            .domain()
-            .unwrap_or_else(|| around(&simulation.snapshot(&[Field::Position]), simulation.dx()));
+        let walls = matches!(bounds, Bounds::Domain(_));
+        let bounds = match bounds {
+            Bounds::Domain(domain) => domain,
+            Bounds::Around(snapshot) => around(snapshot, dx),
+        };
         Self {
             dimension,
-            walls: simulation.domain().is_some(),
+            walls,
             bounds,
             up,
-            dx: simulation.dx(),
+            dx,
             // What falls half the height of the scene.
             speed: (pull * (bounds.1[up] - bounds.0[up]).max(0.0)).sqrt(),
             background: BACKGROUND,
@@ -167,6 +204,13 @@ impl Scenery {
             .collect();
         self
     }
+}
+
+/// What is in the picture.
+enum Bounds<'a> {
+    Domain(([f64; 3], [f64; 3])),
+    /// These particles and some room.
+    Around(&'a Snapshot),
 }
 
 /// The box of the particles, half as large again.

@@ -53,12 +53,16 @@ fn remove(path: &Path) -> Result<(), OutputError> {
 }
 
 /// The files and folders that a run writes, and that `--overwrite` removes.
-const OWN: [&str; 8] = [
+const OWN: &[&str] = &[
     "run.json",
     "diagnostics.csv",
     "frames",
     "particles.pvd",
     "images",
+    "meshes",
+    "render",
+    "plots",
+    "report.html",
     "video.gif",
     "probes",
     "checkpoints",

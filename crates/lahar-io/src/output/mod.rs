@@ -14,6 +14,7 @@ mod diagnostics;
 mod folder;
 mod frames;
 mod growing;
+mod meshes;
 mod probes;
 mod record;
 mod recording;
@@ -31,8 +32,9 @@ pub use diagnostics::DiagnosticsFile;
 pub use folder::RunFolder;
 pub use frames::{frame_name, write_frame};
 pub use growing::Length;
+pub use meshes::MeshFiles;
 pub use record::{PhaseSeconds, Record, Status};
-pub use recording::{Recording, RecordingError};
+pub use recording::{Recording, RecordingError, read_record};
 pub use table::Table;
 pub use writer::{Film, Pace, Pictures, Plan, Writer, Written, film_pace};
 

@@ -54,16 +54,7 @@ impl Recording {
         } else {
             folder
         };
-        let path = folder.join("run.json");
-        let text = fs::read_to_string(&path).map_err(|why| match why.kind() {
-            std::io::ErrorKind::NotFound => error(
-                folder,
-                "there is no run.json in it: it is not a run's folder",
-            ),
-            _ => error(&path, format!("cannot read: {why}")),
-        })?;
-        let record: Record = serde_json::from_str(&text)
-            .map_err(|why| error(&path, format!("it is damaged, or not of a run: {why}")))?;
+        let (path, record) = read_record(folder)?;
         if !matches!(record.dimension, 2 | 3) {
             return Err(error(
                 &path,
@@ -98,6 +89,14 @@ impl Recording {
     #[expect(clippy::len_without_is_empty, reason = "it never is")]
     pub fn len(&self) -> usize {
         self.frames.len()
+    }
+
+    /// The number of a frame as its file has it; `index` counts those that were written from 0.
+    ///
+    /// # Panics
+    /// If there is no such frame.
+    pub fn number(&self, index: usize) -> u64 {
+        frame_number(&self.frames[index]).expect("only files with a number are frames")
     }
 
     /// The particles of a frame, counted from 0 over those that were written: all fields that the file has.
@@ -153,16 +152,36 @@ impl Recording {
     }
 }
 
+/// What was run in `folder`, and how it went, with the path of the file that says so.
+///
+/// # Errors
+/// There is no run, or its record cannot be read.
+pub fn read_record(folder: &Path) -> Result<(PathBuf, Record), RecordingError> {
+    let path = folder.join("run.json");
+    let text = fs::read_to_string(&path).map_err(|why| match why.kind() {
+        std::io::ErrorKind::NotFound => error(
+            folder,
+            "there is no run.json in it: it is not a run's folder",
+        ),
+        _ => error(&path, format!("cannot read: {why}")),
+    })?;
+    let record = serde_json::from_str(&text)
+        .map_err(|why| error(&path, format!("it is damaged, or not of a run: {why}")))?;
+    Ok((path, record))
+}
+
+/// 12 of `000012.npz`.
+fn frame_number(path: &Path) -> Option<u64> {
+    let npz = path.extension().is_some_and(|ending| ending == "npz");
+    let stem = path.file_stem()?.to_str()?;
+    npz.then(|| stem.parse().ok()).flatten()
+}
+
 /// `000000.npz`, ..., in order of their numbers.
 fn frame_files(folder: &Path) -> Vec<PathBuf> {
-    let number = |path: &Path| -> Option<u64> {
-        let npz = path.extension().is_some_and(|ending| ending == "npz");
-        let stem = path.file_stem()?.to_str()?;
-        npz.then(|| stem.parse().ok()).flatten()
-    };
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<(u64, PathBuf)> = entries
-        .filter_map(|entry| Some((number(&entry.path())?, entry.path())))
+        .filter_map(|entry| Some((frame_number(&entry.path())?, entry.path())))
         .collect();
     files.sort_unstable();
     files.into_iter().map(|(_, path)| path).collect()

@@ -26,6 +26,21 @@ impl Table {
         Self::parse(&text).map_err(|what| OutputError::usage(path, what))
     }
 
+    /// The words of one column of such a file.
+    ///
+    /// # Errors
+    /// As [`Self::read`], or if there is no such column.
+    pub fn words(path: &Path, column: &str) -> Result<Vec<String>, OutputError> {
+        let names = Self::read(path)?.names;
+        let index = (names.iter().position(|name| name == column))
+            .ok_or_else(|| OutputError::usage(path, format!("there is no column \"{column}\"")))?;
+        let text = fs::read_to_string(path)
+            .map_err(|error| OutputError::usage(path, format!("cannot read: {error}")))?;
+        let whole = text.rfind('\n').map_or("", |end| &text[..end]);
+        let word = |line: &str| line.split(',').nth(index).map(str::to_owned);
+        Ok(whole.lines().skip(1).filter_map(word).collect())
+    }
+
     fn parse(text: &str) -> Result<Self, String> {
         let whole = text.rfind('\n').map_or("", |end| &text[..end]);
         let mut lines = whole.lines();

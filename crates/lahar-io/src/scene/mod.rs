@@ -279,6 +279,32 @@ impl Scene {
         read_scene(text, name, overrides, limits, Place::Kept(files, folder))
     }
 
+    /// The scene of a run, from [`Scene::resolved`] as its record keeps it, and its name; with overrides.
+    ///
+    /// # Errors
+    /// What is wrong with it: a file that it names may be gone.
+    pub fn recorded(
+        resolved: &serde_json::Value,
+        name: &str,
+        overrides: &[(String, String)],
+    ) -> Result<Self, SceneError> {
+        let mut scene = resolved.clone();
+        if let Some(root) = scene.as_object_mut() {
+            root.remove("computed");
+        }
+        let text = toml::to_string(&scene).map_err(|error| {
+            SceneError::of_file(name, format!("the scene in run.json: {error}"))
+        })?;
+        let limits = Limits::default();
+        match builtin::find(name) {
+            Some(scene) => {
+                let files = Place::Embedded(scene.files);
+                read_scene(&text, name, overrides, &limits, files)
+            }
+            None => Self::parse_within(&text, name, overrides, &limits),
+        }
+    }
+
     /// Samples the particles and makes the simulation.
     ///
     /// # Errors

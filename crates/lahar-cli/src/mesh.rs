@@ -1,0 +1,115 @@
+//! `lahar mesh`: surfaces around a run's particles, a file a material and frame.
+
+use std::process::ExitCode;
+
+use lahar::{Data, Field, Snapshot};
+use lahar_io::export::MeshFormat;
+use lahar_io::output::{MeshFiles, Recording};
+use lahar_io::surface::{Style, Surface};
+
+use crate::error::{CliError, INTERRUPTED};
+use crate::recorded::{self, End};
+use crate::{args, terminal};
+
+/// Makes the meshes of `args.run`.
+pub(crate) fn mesh(args: &args::Mesh) -> Result<ExitCode, CliError> {
+    let recording = recorded::open(&args.run)?;
+    if recording.record().dimension != 3 {
+        return Err(CliError::Usage(format!(
+            "{} is a run in 2D; surfaces are made of runs in 3D",
+            recording.folder().display()
+        )));
+    }
+    let materials = materials(&recording, &args.materials)?;
+    let formats = formats(&args.format)?;
+    let style = Style {
+        cube: args.cube,
+        smoothing: args.smoothing,
+    };
+    let folder = match &args.output {
+        Some(folder) => folder.clone(),
+        None => recording.folder().join("meshes"),
+    };
+    let names: Vec<&str> = materials.iter().map(|(_, name)| name.as_str()).collect();
+    let mut files = MeshFiles::create(&folder, &names, &formats)?;
+    let end = recorded::each(&recording, args.frames, |number, snapshot| {
+        let mut triangles = 0;
+        for (index, name) in &materials {
+            let (positions, volume) = particles(snapshot, *index).map_err(CliError::Usage)?;
+            let surface = Surface::around(&positions, volume, style)
+                .map_err(|error| CliError::Usage(format!("frame {number}, {name}: {error}")))?;
+            triangles += surface.triangles.len();
+            files.write(name, number, snapshot.time, surface.as_triangles())?;
+        }
+        Ok(format!("t = {:.3} s  {triangles} triangles", snapshot.time))
+    })?;
+    for name in names {
+        terminal::print(&format!("  {}/\n", folder.join(name).display()));
+    }
+    Ok(match end {
+        End::Done => ExitCode::SUCCESS,
+        End::Interrupted => ExitCode::from(INTERRUPTED),
+    })
+}
+
+/// The chosen materials, or all, with their numbers.
+fn materials(recording: &Recording, chosen: &[String]) -> Result<Vec<(u32, String)>, CliError> {
+    let scene = &recording.record().scene;
+    let table = scene["materials"].as_object();
+    let all: Vec<(u32, String)> = (0..)
+        .zip(table.into_iter().flat_map(|table| table.keys().cloned()))
+        .collect();
+    if let Some(unknown) = (chosen.iter()).find(|name| !all.iter().any(|(_, own)| own == *name)) {
+        let names: Vec<&str> = all.iter().map(|(_, name)| name.as_str()).collect();
+        return Err(CliError::Usage(format!(
+            "there is no material \"{unknown}\" in this run; there are {}",
+            names.join(", ")
+        )));
+    }
+    Ok(all
+        .into_iter()
+        .filter(|(_, name)| chosen.is_empty() || chosen.contains(name))
+        .collect())
+}
+
+fn formats(names: &[String]) -> Result<Vec<MeshFormat>, CliError> {
+    let format = |name: &String| {
+        (MeshFormat::ALL.into_iter())
+            .find(|format| [format.name(), format.ending()].contains(&name.as_str()))
+            .ok_or_else(|| {
+                let names = MeshFormat::ALL.map(MeshFormat::name).join(", ");
+                CliError::Usage(format!(
+                    "there is no format of meshes \"{name}\"; there are {names}"
+                ))
+            })
+    };
+    names.iter().map(format).collect()
+}
+
+/// Positions \[m\] of the particles of a material, and the volume \[m³\] that each fills now, on average.
+fn particles(snapshot: &Snapshot, material: u32) -> Result<(Vec<[f64; 3]>, f64), String> {
+    let field = |field: Field| {
+        snapshot.get(field).map(Data::to_f64).ok_or_else(|| {
+            format!(
+                "the frames have no \"{}\"; run the scene again with position, material and volume0 among output.fields",
+                field.info().name
+            )
+        })
+    };
+    let (positions, volume0) = (field(Field::Position)?, field(Field::Volume0)?);
+    let jacobian = snapshot.get(Field::Jacobian).map(Data::to_f64);
+    let materials = field(Field::Material)?;
+    let (mut places, mut volume) = (Vec::new(), 0.0);
+    for (row, own) in materials.iter().enumerate() {
+        if *own == f64::from(material) {
+            places.push([0, 1, 2].map(|axis| positions[3 * row + axis]));
+            volume += volume0[row] * jacobian.as_ref().map_or(1.0, |jacobian| jacobian[row]);
+        }
+    }
+    let each = match places.len() {
+        // No matter: there is nothing to surround.
+        0 => 1.0,
+        count => volume / count as f64,
+    };
+    Ok((places, each))
+}

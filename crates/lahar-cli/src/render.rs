@@ -1,0 +1,171 @@
+//! `lahar render`: pictures and films of a run's frames, long after it has run.
+
+use std::fs;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use lahar_io::image::{self, Mp4, Picture, Scenery};
+use lahar_io::output::{Recording, film_pace, frame_name};
+use lahar_io::scene::Scene;
+
+use crate::error::{CliError, INTERRUPTED};
+use crate::recorded::{self, End};
+use crate::{args, looks, terminal};
+
+/// Draws the frames of `args.run`.
+pub(crate) fn render(args: &args::Render) -> Result<ExitCode, CliError> {
+    let recording = recorded::open(&args.run)?;
+    let scene = recorded::scene(&recording, &changes(args))?;
+    let chosen = recorded::chosen(&recording, args.frames)?;
+    let first = recording.frame(0).map_err(recorded::unreadable)?;
+    let size = args.size.map_or(scene.output.picture_size, |size| size.0);
+    let renderer = looks::renderer(&scene, &Scenery::recorded(&scene, &first), size);
+    let folder = match &args.output {
+        Some(folder) => folder.clone(),
+        None => recording.folder().join("render"),
+    };
+    fs::create_dir_all(&folder).map_err(|error| cannot(&folder, &error))?;
+    let mut films = match args.video {
+        true => Some(Films::new(&folder, film_rate(&recording, &scene, &chosen))),
+        false => None,
+    };
+    let end = recorded::each(&recording, args.frames, |number, snapshot| {
+        let picture = renderer.render(snapshot);
+        if !args.no_images {
+            let path = folder.join(frame_name(number, "png"));
+            picture
+                .save_png(&path)
+                .map_err(|error| cannot(&path, &error))?;
+        }
+        if let Some(films) = &mut films {
+            films.push(&picture)?;
+        }
+        Ok(format!("t = {:.3} s", snapshot.time))
+    })?;
+    if !args.no_images {
+        terminal::print(&format!("  {}/\n", folder.display()));
+    }
+    if let Some(films) = films {
+        films.finish()?;
+    }
+    Ok(match end {
+        End::Done => ExitCode::SUCCESS,
+        End::Interrupted => ExitCode::from(INTERRUPTED),
+    })
+}
+
+/// What the options say of the scene's camera.
+fn changes(args: &args::Render) -> Vec<(String, String)> {
+    let mut changes = args.set.clone();
+    if let Some(direction) = &args.camera {
+        changes.push(("camera.direction".to_owned(), format!("[{direction}]")));
+    }
+    if let Some(word) = &args.color_by {
+        changes.push(("camera.color_by".to_owned(), format!("\"{word}\"")));
+    }
+    changes
+}
+
+/// Pictures a second for a film of all chosen frames, at the speed at which things happened if that is not a flash.
+fn film_rate(recording: &Recording, scene: &Scene, chosen: &[usize]) -> f64 {
+    let (Some(first), Some(last)) = (chosen.first(), chosen.last()) else {
+        return scene.frame_rate;
+    };
+    let span = (recording.number(*last) - recording.number(*first)).max(1) as f64;
+    let shown = chosen.len().max(2) as f64 - 1.0;
+    let rate = scene.frame_rate * shown / span;
+    let pace = film_pace(rate, chosen.len() as u64);
+    // All frames are in the film, so none may be skipped.
+    (pace.rate * pace.every as f64).min(MOST_RATE)
+}
+
+/// What GIF can do, in hundredths of a second, and eyes can see.
+const MOST_RATE: f64 = 50.0;
+
+fn cannot(path: &Path, error: &std::io::Error) -> CliError {
+    CliError::Machine(format!("{}: cannot write: {error}", path.display()))
+}
+
+/// The films under way: a GIF always, MP4 where there is ffmpeg.
+struct Films {
+    gif: (PathBuf, image::Film),
+    mp4: Option<(PathBuf, Option<Mp4>)>,
+    rate: f64,
+}
+
+impl Films {
+    fn new(folder: &Path, rate: f64) -> Self {
+        let version = Mp4::available();
+        terminal::note(&match &version {
+            Some(version) => format!("video: GIF by lahar, MP4 by {version}"),
+            None => "video: GIF by lahar; for MP4 too, install ffmpeg".to_owned(),
+        });
+        Self {
+            gif: (folder.join("video.gif"), image::Film::new(rate)),
+            mp4: version.map(|_| (folder.join("video.mp4"), None)),
+            rate,
+        }
+    }
+
+    fn push(&mut self, picture: &Picture) -> Result<(), CliError> {
+        let (path, film) = &mut self.gif;
+        film.push(picture).map_err(|error| cannot(path, &error))?;
+        let Some((path, film)) = &mut self.mp4 else {
+            return Ok(());
+        };
+        let running = match film {
+            Some(running) => running,
+            None => film.insert(
+                Mp4::start(path, self.rate, picture).map_err(|error| cannot(path, &error))?,
+            ),
+        };
+        if running.push(picture).is_err()
+            && let Some(ended) = film.take()
+        {
+            // What it has to say is worth more than that its pipe is closed.
+            ended.finish().map_err(|error| cannot(path, &error))?;
+        }
+        Ok(())
+    }
+
+    fn finish(self) -> Result<(), CliError> {
+        let (path, film) = self.gif;
+        let write = || {
+            let mut writer = BufWriter::new(fs::File::create(&path)?);
+            film.write(&mut writer)?;
+            writer.flush()
+        };
+        write().map_err(|error| cannot(&path, &error))?;
+        terminal::print(&format!("  {}\n", path.display()));
+        if let Some((path, Some(film))) = self.mp4 {
+            film.finish().map_err(|error| cannot(&path, &error))?;
+            terminal::print(&format!("  {}\n", path.display()));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_camera_comes_from_options() {
+        let args = args::Render {
+            camera: Some("1,2,3".to_owned()),
+            color_by: Some("speed".to_owned()),
+            set: vec![("camera.height".to_owned(), "2".to_owned())],
+            ..args::Render::default()
+        };
+        let pairs = [
+            ("camera.height", "2"),
+            ("camera.direction", "[1,2,3]"),
+            ("camera.color_by", "\"speed\""),
+        ];
+        assert_eq!(
+            changes(&args),
+            pairs.map(|(key, value)| (key.to_owned(), value.to_owned()))
+        );
+    }
+}

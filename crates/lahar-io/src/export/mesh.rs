@@ -1,0 +1,135 @@
+//! Triangle meshes as files: single precision, since programs that draw have no more.
+
+use std::io::{self, Write};
+
+use super::vtp;
+
+/// Triangles as files take them: places \[m\] and indices, counter-clockwise seen from outside.
+#[derive(Clone, Copy, Debug)]
+pub struct Triangles<'a> {
+    /// Places \[m\].
+    pub vertices: &'a [[f64; 3]],
+    /// Indices of vertices.
+    pub triangles: &'a [[u32; 3]],
+}
+
+/// A format of meshes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MeshFormat {
+    /// Stanford's polygon format, little-endian.
+    Ply,
+    /// Wavefront's text.
+    Obj,
+    /// VTK's XML PolyData.
+    Vtk,
+}
+
+impl MeshFormat {
+    /// Every format of meshes.
+    pub const ALL: [Self; 3] = [Self::Ply, Self::Obj, Self::Vtk];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ply => "ply",
+            Self::Obj => "obj",
+            Self::Vtk => "vtk",
+        }
+    }
+
+    /// How its files end, without the dot.
+    pub fn ending(self) -> &'static str {
+        match self {
+            Self::Ply => "ply",
+            Self::Obj => "obj",
+            Self::Vtk => "vtp",
+        }
+    }
+
+    /// Writes a mesh of a moment \[s\] and gives the writer back, flushed.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn write<W: Write>(self, mut writer: W, mesh: Triangles<'_>, time: f64) -> io::Result<W> {
+        match self {
+            Self::Ply => ply(&mut writer, mesh, time)?,
+            Self::Obj => obj(&mut writer, mesh, time)?,
+            Self::Vtk => vtp::write_triangles(&mut writer, mesh, time)?,
+        }
+        writer.flush()?;
+        Ok(writer)
+    }
+}
+
+fn ply(writer: &mut impl Write, mesh: Triangles<'_>, time: f64) -> io::Result<()> {
+    write!(
+        writer,
+        "ply\nformat binary_little_endian 1.0\ncomment lahar, time {time:?} s\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nelement face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        mesh.vertices.len(),
+        mesh.triangles.len()
+    )?;
+    for x in mesh.vertices.iter().flatten() {
+        writer.write_all(&(*x as f32).to_le_bytes())?;
+    }
+    for triangle in mesh.triangles {
+        writer.write_all(&[3])?;
+        for index in triangle {
+            writer.write_all(&index.to_le_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+fn obj(writer: &mut impl Write, mesh: Triangles<'_>, time: f64) -> io::Result<()> {
+    writeln!(writer, "# lahar, time {time:?} s")?;
+    for [x, y, z] in mesh.vertices {
+        writeln!(writer, "v {} {} {}", *x as f32, *y as f32, *z as f32)?;
+    }
+    for [a, b, c] in mesh.triangles {
+        // Counted from 1, in u64 so that the last one has a successor.
+        let [a, b, c] = [a, b, c].map(|i| u64::from(*i) + 1);
+        writeln!(writer, "f {a} {b} {c}")?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TETRAHEDRON: Triangles<'_> = Triangles {
+        vertices: &[
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 0.5, 0.0],
+            [0.0, 0.0, 0.1],
+        ],
+        triangles: &[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+    };
+
+    #[test]
+    fn an_obj_is_lines_of_vertices_and_faces() {
+        let text = MeshFormat::Obj.write(Vec::new(), TETRAHEDRON, 0.5).unwrap();
+        assert_eq!(
+            String::from_utf8(text).unwrap(),
+            "# lahar, time 0.5 s\nv 0 0 0\nv 1 0 0\nv 0 0.5 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+        );
+    }
+
+    #[test]
+    fn a_ply_holds_every_number() {
+        let bytes = MeshFormat::Ply.write(Vec::new(), TETRAHEDRON, 0.5).unwrap();
+        let marker = b"end_header\n";
+        let start = bytes
+            .windows(marker.len())
+            .position(|window| window == marker)
+            .unwrap();
+        let body = &bytes[start + marker.len()..];
+        assert_eq!(body.len(), 4 * 12 + 4 * 13);
+        assert_eq!(body[4 * 11..4 * 12], 0.1_f32.to_le_bytes());
+        assert_eq!(
+            body[4 * 12..][..13],
+            [3, 0, 0, 0, 0, 2, 0, 0, 0, 1, 0, 0, 0]
+        );
+    }
+}

@@ -1,0 +1,68 @@
+//! `meshes/MATERIAL/000000.ply`: surfaces, a folder a material, and a list by time for ParaView.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::{OutputError, frame_name, write_whole};
+use crate::export::{MeshFormat, TimeSeries, Triangles};
+
+/// The growing sequences.
+#[derive(Debug)]
+pub struct MeshFiles {
+    folder: PathBuf,
+    formats: Vec<MeshFormat>,
+    /// A list by time for each material, where VTK's files are written.
+    series: Vec<(String, TimeSeries)>,
+}
+
+impl MeshFiles {
+    /// Makes `folder` and one in it for each of `materials`. Meshes that are there already are written over.
+    ///
+    /// # Errors
+    /// If something cannot be made.
+    pub fn create(
+        folder: &Path,
+        materials: &[&str],
+        formats: &[MeshFormat],
+    ) -> Result<Self, OutputError> {
+        let mut series = Vec::new();
+        for material in materials {
+            let own = folder.join(material);
+            fs::create_dir_all(&own).map_err(OutputError::at(&own))?;
+            if formats.contains(&MeshFormat::Vtk) {
+                let path = folder.join(format!("{material}.pvd"));
+                let list = TimeSeries::start(&path, 0).map_err(OutputError::at(&path))?;
+                series.push(((*material).to_owned(), list));
+            }
+        }
+        Ok(Self {
+            folder: folder.to_owned(),
+            formats: formats.to_owned(),
+            series,
+        })
+    }
+
+    /// Writes the mesh of a material in a frame, at a time \[s\].
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(
+        &mut self,
+        material: &str,
+        frame: u64,
+        time: f64,
+        mesh: Triangles<'_>,
+    ) -> Result<(), OutputError> {
+        for &format in &self.formats {
+            let name = frame_name(frame, format.ending());
+            let path = self.folder.join(material).join(&name);
+            write_whole(&path, false, |writer| format.write(writer, mesh, time))?;
+            let list = (self.series.iter_mut()).find(|(own, _)| own == material);
+            if let Some((_, list)) = list.filter(|_| format == MeshFormat::Vtk) {
+                (list.push(time, &format!("{material}/{name}")))
+                    .map_err(OutputError::at(list.path()))?;
+            }
+        }
+        Ok(())
+    }
+}
