@@ -233,6 +233,11 @@ fn a_recorded_scene_is_the_scene() {
         let resolved = scene.resolved();
         let again =
             Scene::recorded(&resolved, builtin.name, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let materials = |scene: &Scene| -> Vec<String> {
+            scene.materials.iter().map(|m| m.name.clone()).collect()
+        };
         assert_eq!(again.resolved(), resolved, "{}", builtin.name);
+        // Particles know materials by their numbers.
+        assert_eq!(materials(&again), materials(&scene), "{}", builtin.name);
     }
 }

@@ -56,6 +56,7 @@ use files::{Files, Place, read_text};
 use lahar::{Isa, Simulate, Simulation, TimeStep};
 use plan::Plan;
 use read::Reader;
+use std::fmt;
 use std::path::Path;
 
 /// Bounds on what a scene may ask for; a matter of the machine, not of the scene.
@@ -288,13 +289,15 @@ impl Scene {
         name: &str,
         overrides: &[(String, String)],
     ) -> Result<Self, SceneError> {
-        let mut scene = resolved.clone();
-        if let Some(root) = scene.as_object_mut() {
+        let wrong = |error: &dyn fmt::Display| {
+            SceneError::of_file(name, format!("the scene in run.json: {error}"))
+        };
+        let mut scene = toml::Value::try_from(resolved).map_err(|error| wrong(&error))?;
+        if let Some(root) = scene.as_table_mut() {
             root.remove("computed");
         }
-        let text = toml::to_string(&scene).map_err(|error| {
-            SceneError::of_file(name, format!("the scene in run.json: {error}"))
-        })?;
+        restore_infinities(&mut scene);
+        let text = toml::to_string(&scene).map_err(|error| wrong(&error))?;
         let limits = Limits::default();
         match builtin::find(name) {
             Some(scene) => {
@@ -510,6 +513,19 @@ impl Scene {
             ));
         }
         lines.join("\n") + "\n"
+    }
+}
+
+/// JSON has no infinite numbers, so [`Scene::resolved`] has words in their place.
+fn restore_infinities(value: &mut toml::Value) {
+    match value {
+        toml::Value::String(word) if word == "inf" => *value = toml::Value::Float(f64::INFINITY),
+        toml::Value::String(word) if word == "-inf" => {
+            *value = toml::Value::Float(f64::NEG_INFINITY);
+        }
+        toml::Value::Array(values) => values.iter_mut().for_each(restore_infinities),
+        toml::Value::Table(table) => table.iter_mut().for_each(|(_, v)| restore_infinities(v)),
+        _ => {}
     }
 }
 
