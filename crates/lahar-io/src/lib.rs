@@ -1,5 +1,6 @@
 //! Everything between the lahar simulator and the disk: scenes and particles to start from, run folders, pictures.
 
+mod after_error;
 pub mod bench;
 pub mod builtin;
 pub mod checkpoint;

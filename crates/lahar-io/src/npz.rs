@@ -13,6 +13,7 @@ use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
+use crate::after_error::AfterError;
 use lahar::Data;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
@@ -502,7 +503,7 @@ pub enum Compression {
 /// # Ok::<(), std::io::Error>(())
 /// ```
 pub struct NpzWriter<W: Write + Seek> {
-    zip: ZipWriter<W>,
+    zip: ZipWriter<AfterError<W>>,
     compression: Compression,
 }
 
@@ -523,7 +524,7 @@ impl<W: Write + Seek> NpzWriter<W> {
     /// Starts an archive in `writer`.
     pub fn new(writer: W, compression: Compression) -> Self {
         Self {
-            zip: ZipWriter::new(writer),
+            zip: ZipWriter::new(AfterError::new(writer)),
             compression,
         }
     }
@@ -570,7 +571,7 @@ impl<W: Write + Seek> NpzWriter<W> {
     /// # Errors
     /// If writing fails.
     pub fn finish(self) -> io::Result<W> {
-        let mut writer = self.zip.finish()?;
+        let mut writer = self.zip.finish()?.into_inner();
         writer.flush()?;
         Ok(writer)
     }
