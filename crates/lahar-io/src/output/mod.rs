@@ -5,6 +5,7 @@
 //! DIR/diagnostics.csv   totals, a row a frame                     diagnostics
 //! DIR/probes/NAME.csv   what probes have read, a row a reading  probes
 //! DIR/frames/000000.npz particles                                 frames
+//! DIR/checkpoints/      what a run goes on from                  crate::checkpoint
 //! DIR/images/000000.png pictures, and DIR/video.gif               crate::image
 //! ```
 //! Every file but the growing csv is written under a temporary name and renamed, so that a run killed at any moment
