@@ -63,6 +63,29 @@ fn fast_cases_meet_their_targets_or_are_known_to_miss() {
     assert_eq!(wrong, [] as [String; 0]);
 }
 
+/// A time step that is too long fails frames; they are tried again with a shorter one, as by `lahar run`, and the report
+/// tells.
+#[test]
+fn frames_that_fail_are_tried_again() {
+    let [case] = validate::find("E1")[..] else {
+        panic!("E1 is one case");
+    };
+    let options = Options {
+        quick: true,
+        isa: Isa::Portable,
+        set: [("dt", "0.2"), ("frame_rate", "0.5")]
+            .map(|(key, to)| (key.into(), to.into()))
+            .into(),
+        scene_file: None,
+    };
+    let outcome = validate::run(case, &options, &|_| {}).unwrap();
+    assert_eq!(outcome.failure, None);
+    assert!(!outcome.findings.is_empty());
+    let again = |run: &&String| run.contains("frame_rate=0.5: the frame from t = ");
+    let told = outcome.runs.iter().filter(again).count();
+    assert!(told > 0, "{:?}", outcome.runs);
+}
+
 /// What is listed is a quantity of a case: none has been renamed.
 #[test]
 fn the_list_names_cases() {

@@ -210,7 +210,7 @@ const MPM88_MOMENTS: [f64; 4] = [0.317227613, 0.158267514, 0.102240077, 0.078108
 fn k7(session: &mut Session<'_>) -> Result<(), Stop> {
     for (precision, target) in [("f64", 1e-8), ("f32", 1e-5)] {
         let mut running = session.start(&[("precision", format!("\"{precision}\""))])?;
-        running.simulation.advance_to(0.1)?;
+        running.advance_to(0.1)?;
         let x = field(&*running.simulation, Field::Position);
         for (power, wanted) in (1..).zip(MPM88_MOMENTS) {
             let sum: f64 = x
@@ -238,7 +238,7 @@ fn k8(session: &mut Session<'_>) -> Result<(), Stop> {
             y.iter().skip(1).step_by(2).sum::<f64>() / count
         };
         let start = height(&*running.simulation);
-        running.simulation.advance_to(0.5)?;
+        running.advance_to(0.5)?;
         let (n, dt) = (running.simulation.substeps() as f64, 1e-3);
         let exact = start + 1.5 * n * dt - 9.81 * dt * dt * n * (n + 1.0) / 2.0;
         let ours = height(&*running.simulation);

@@ -130,12 +130,14 @@ pub fn run(
     progress: &dyn Fn(&str),
 ) -> Result<Outcome, SceneError> {
     let mut session = Session::new(case, options, progress);
-    match (case.run)(&mut session) {
-        Ok(()) => Ok(session.outcome),
+    let ended = (case.run)(&mut session);
+    let outcome = session.finish();
+    match ended {
+        Ok(()) => Ok(outcome),
         Err(Stop::Scene(error)) => Err(*error),
         Err(Stop::Failure(failure)) => Ok(Outcome {
             failure: Some(failure),
-            ..session.outcome
+            ..outcome
         }),
     }
 }

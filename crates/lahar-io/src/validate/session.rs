@@ -1,6 +1,9 @@
 //! A case while it runs: scenes in, findings and plots out.
 
-use lahar::{Data, Diagnostics, Failure, Field, ProbeSamples, Simulate};
+use std::cell::RefCell;
+use std::rc::Rc;
+
+use lahar::{Data, Diagnostics, Failure, Field, ProbeSamples, Retry, Simulate};
 
 use super::{Case, Finding, Options, Outcome};
 use crate::error::SceneError;
@@ -32,7 +35,9 @@ pub(super) struct Session<'a> {
     case: &'static Case,
     options: &'a Options,
     progress: &'a dyn Fn(&str),
-    pub(super) outcome: Outcome,
+    outcome: Outcome,
+    /// Frames that were tried again.
+    retries: Rc<RefCell<Vec<String>>>,
 }
 
 /// A scene that runs.
@@ -41,6 +46,10 @@ pub(super) struct Running {
     pub(super) simulation: Box<dyn Simulate>,
     /// What probes have read so far.
     probes: Vec<ProbeSamples>,
+    /// What it was started by.
+    command: String,
+    /// The session's.
+    retries: Rc<RefCell<Vec<String>>>,
 }
 
 /// A number over time: (time \[s\], value).
@@ -57,7 +66,14 @@ impl<'a> Session<'a> {
             options,
             progress,
             outcome: Outcome::default(),
+            retries: Rc::default(),
         }
+    }
+
+    /// What it came to; frames that were tried again are told below what was run.
+    pub(super) fn finish(mut self) -> Outcome {
+        self.outcome.runs.append(&mut self.retries.borrow_mut());
+        self.outcome
     }
 
     /// Whether only what takes seconds is to be run.
@@ -109,6 +125,8 @@ impl<'a> Session<'a> {
             scene,
             simulation,
             probes: Vec::new(),
+            command,
+            retries: Rc::clone(&self.retries),
         })
     }
 
@@ -183,12 +201,28 @@ impl<'a> Session<'a> {
 }
 
 impl Running {
+    /// Runs to `time` \[s\]; what fails is tried again from here with a shorter time step, as by `lahar run`.
+    pub(super) fn advance_to(&mut self, time: f64) -> Result<(), Stop> {
+        let told = |retry: &Retry| {
+            let told = format!("{}: {retry}", self.command);
+            self.retries.borrow_mut().push(told);
+        };
+        let frame = lahar::frame(
+            &mut *self.simulation,
+            |simulation| simulation.advance_to(time),
+            told,
+        );
+        match frame {
+            Ok(_) => Ok(()),
+            Err(failure) => Err(Stop::Failure(Retry::in_vain(&failure))),
+        }
+    }
+
     /// Runs frame by frame to the scene's end; `look` sees the simulation at the start and after each.
     pub(super) fn frames(&mut self, mut look: impl FnMut(&mut dyn Simulate)) -> Result<(), Stop> {
         look(&mut *self.simulation);
         for frame in 1..=self.scene.frames() {
-            self.simulation
-                .advance_to(frame as f64 / self.scene.frame_rate)?;
+            self.advance_to(frame as f64 / self.scene.frame_rate)?;
             self.take_probes();
             look(&mut *self.simulation);
         }

@@ -81,9 +81,7 @@ fn at_rest(session: &mut Session<'_>, mut running: Running, what: &str) -> Resul
     let mut frame = 0;
     while running.simulation.substeps() < substeps {
         frame += 1;
-        running
-            .simulation
-            .advance_to(f64::from(frame) / running.scene.frame_rate)?;
+        running.advance_to(f64::from(frame) / running.scene.frame_rate)?;
         fastest = fastest.max(running.simulation.diagnostics().max_speed);
     }
     let last = running.simulation.diagnostics();
