@@ -40,7 +40,10 @@ impl<W> AfterError<W> {
 
 impl<W: Write> Write for AfterError<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.until_it_fails(bytes.len(), |inner| inner.write(bytes))
+        self.until_it_fails(bytes.len(), |inner| match inner.write(bytes)? {
+            0 if !bytes.is_empty() => Err(io::ErrorKind::WriteZero.into()),
+            count => Ok(count),
+        })
     }
     fn flush(&mut self) -> io::Result<()> {
         self.until_it_fails((), W::flush)
@@ -66,6 +69,6 @@ mod tests {
         writer.write_all(b"h").unwrap();
         writer.seek(SeekFrom::Start(1)).unwrap();
         writer.flush().unwrap();
-        assert_eq!(&room[..3], b"abc");
+        assert_eq!(&room, b"abcd");
     }
 }
