@@ -6,7 +6,7 @@
 //! c(x) = Σ_p W(x − x_p) / Σ_q W(x_p − x_q)
 //! ```
 //! and cuts where c has some value. Deep inside it is 1. Which value lies on the surface follows from the particles'
-//! spacing: [`level`] computes it for a half-space of particles on a lattice, whose surface is half a spacing beyond
+//! spacing: `level` computes it for a half-space of particles on a lattice, whose surface is half a spacing beyond
 //! the outermost ones. So a body's mesh has the body's volume, whatever its size and the number of its particles.
 
 use std::fmt;
