@@ -128,7 +128,7 @@ fn draw(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, CliError> {
         .map(|(name, plot)| {
             let path = folder.join(name).with_extension("svg");
             let svg = plot
-                .svg()
+                .svg_from_zero()
                 .map_err(|error| CliError::Machine(error.to_string()))?;
             fs::write(&path, svg).map_err(|error| cannot(&path, error))?;
             Ok(path)

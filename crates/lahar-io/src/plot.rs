@@ -59,9 +59,22 @@ impl Plot {
     /// # Errors
     /// If there is no finite point.
     pub fn svg(&self) -> Result<String, PlotError> {
+        self.svg_with(None)
+    }
+
+    /// [`Plot::svg`] with 0 on the left axis, so that heights are to each other as the numbers are.
+    ///
+    /// # Errors
+    /// If there is no finite point.
+    pub fn svg_from_zero(&self) -> Result<String, PlotError> {
+        self.svg_with(Some(0.0))
+    }
+
+    /// With `shown` on the left axis.
+    fn svg_with(&self, shown: Option<f64>) -> Result<String, PlotError> {
         let mut text = String::new();
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-        self.draw(&root)?;
+        self.draw(&root, shown)?;
         drop(root);
         Ok(text)
     }
@@ -69,6 +82,7 @@ impl Plot {
     fn draw(
         &self,
         area: &DrawingArea<SVGBackend<'_>, plotters::coord::Shift>,
+        shown: Option<f64>,
     ) -> Result<(), PlotError> {
         let wrong = |error: DrawingAreaErrorKind<_>| PlotError(error.to_string());
         let points = || {
@@ -79,6 +93,10 @@ impl Plot {
         };
         let x = range(points().map(|p| p.0), 0.0);
         let y = range(points().map(|p| p.1), 0.05);
+        let y = y.map(|y| match shown {
+            Some(shown) => y.start.min(shown)..y.end.max(shown),
+            None => y,
+        });
         let (Some(x), Some(y)) = (x, y) else {
             return Err(PlotError(format!("\"{}\" has no finite point", self.title)));
         };
@@ -202,6 +220,7 @@ mod tests {
         let mut constant = plot(&[(0.0, 3.0), (1.0, 3.0)]);
         constant.lines.truncate(1);
         constant.svg().unwrap();
+        constant.svg_from_zero().unwrap();
         constant.lines[0].points.truncate(1);
         constant.svg().unwrap();
         constant.lines[0].points[0].1 = f64::INFINITY;

@@ -358,32 +358,24 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         let count = batch.position.len();
         check_batch(batch, &self.setup, self.next_id)?;
         let offset = self.scheme.offset();
-        let mut located = Vec::with_capacity(count);
         let now = self.moving(0.0);
-        for (i, position) in batch.position.iter().enumerate() {
-            let cells: [f64; D] = core::array::from_fn(|axis| {
+        let (hold, origin, dx) = (self.walls.hold, self.origin, self.setup.dx);
+        let place_of = |position: &[f64; D]| -> [(i32, f64); D] {
+            core::array::from_fn(|axis| {
                 // Whoever starts outside is put where the first substep would put it.
-                let (low, high) = self.walls.hold[axis];
-                let cells = (position[axis] - self.origin[axis]) / self.setup.dx;
-                cells.max(low.unwrap_or(cells)).min(high.unwrap_or(cells))
-            });
-            let mut place = cells.map(|cells| locate(cells, offset, D));
-            let edge = block_edge(D) as f64;
-            let middle = place.map(|(block, _)| edge * (f64::from(block) + 0.5) + offset);
-            let (mut x, mut v) = (Vector(place.map(|(_, x)| x)), Vector([0.0; D]));
-            let (hold, dx) = (&self.walls.hold, self.setup.dx);
-            if put_out(&now, hold, middle, (&mut x, &mut v), dx, |_, _, _| {}) {
-                for axis in 0..D {
-                    place[axis].1 = x[axis];
-                }
-            }
-            if !in_range(place.map(|(block, _)| block)) {
-                return setup_error(
-                    "position",
-                    format!("particle {i} at {position:?} m is too far from the origin"),
-                );
-            }
-            located.push(place);
+                let (low, high) = hold[axis];
+                let cells = (position[axis] - origin[axis]) / dx;
+                let cells = cells.max(low.unwrap_or(cells)).min(high.unwrap_or(cells));
+                locate(cells, offset, D)
+            })
+        };
+        let far = |position| !in_range(place_of(position).map(|(block, _)| block));
+        if let Some(i) = batch.position.iter().position(far) {
+            let position = batch.position[i];
+            return setup_error(
+                "position",
+                format!("particle {i} at {position:?} m is too far from the origin"),
+            );
         }
         let density = self.setup.materials[batch.material].density;
         let pick = |values: &[f64], i: usize| {
@@ -395,8 +387,16 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         };
         let group = &mut self.groups[batch.material];
         let before = group.len();
-        for (i, place) in located.iter().enumerate() {
+        for column in &mut group.columns {
+            column.reserve(count);
+        }
+        for (i, position) in batch.position.iter().enumerate() {
+            let place = place_of(position);
             let block = place.map(|(block, _)| block);
+            let edge = block_edge(D) as f64;
+            let middle = block.map(|block| edge * (f64::from(block) + 0.5) + offset);
+            let (mut x, mut v) = (Vector(place.map(|(_, x)| x)), Vector([0.0; D]));
+            put_out(&now, &hold, middle, (&mut x, &mut v), dx, |_, _, _| {});
             let row = (before + i) as u32;
             match group.runs.last_mut() {
                 Some(run) if run.start >= before as u32 && run.block == block => run.end = row + 1,
@@ -425,7 +425,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             };
             let (head, strain) = group.columns.split_at_mut(Layout::strain(D));
             for axis in 0..D {
-                head[axis].push(T::from_f64(place[axis].1));
+                head[axis].push(T::from_f64(x[axis]));
                 head[Layout::velocity(D) + axis].push(T::from_f64(velocity[axis]));
                 for row in 0..D {
                     let c = batch.affine.get(i).map_or(0.0, |c| c[row][axis]);
@@ -447,21 +447,19 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                 }
             }
         }
-        let volume: Vec<T> = (0..count)
-            .map(|i| T::from_f64(pick(&batch.volume, i)))
-            .collect();
-        let mass: Vec<T> = (0..count)
-            .map(|i| {
-                T::from_f64(if batch.mass.is_empty() {
-                    density * pick(&batch.volume, i)
-                } else {
-                    pick(&batch.mass, i)
-                })
+        let volume = |i| T::from_f64(pick(&batch.volume, i));
+        let mass = |i| {
+            T::from_f64(if batch.mass.is_empty() {
+                density * pick(&batch.volume, i)
+            } else {
+                pick(&batch.mass, i)
             })
-            .collect();
-        group.volume0.extend(before, &volume);
-        group.mass.extend(before, &mass);
-        group.body.extend(before, &vec![batch.body; count]);
+        };
+        group.volume0.extend(before, (0..count).map(volume));
+        group.mass.extend(before, (0..count).map(mass));
+        group
+            .body
+            .extend(before, core::iter::repeat_n(batch.body, count));
         group.id.extend((0..count as u32).map(|i| self.next_id + i));
         self.next_id += count as u32;
         if let Some(starts) = &mut self.starts {
@@ -785,7 +783,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             };
             let volumes: Vec<T> = (0..group.len()).map(volume).collect();
             group.volume0 = PerParticle::Uniform(T::default());
-            group.volume0.extend(0, &volumes);
+            group.volume0.extend(0, volumes.into_iter());
         }
     }
 

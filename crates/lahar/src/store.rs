@@ -48,25 +48,21 @@ impl<T: Copy + PartialEq> PerParticle<T> {
     }
 
     /// Adds `more` behind the `count` numbers that are there.
-    pub(crate) fn extend(&mut self, count: usize, more: &[T]) {
-        if let Self::Uniform(value) = *self {
+    pub(crate) fn extend(&mut self, count: usize, more: impl Iterator<Item = T> + Clone) {
+        if let Self::Uniform(value) = self {
             if count == 0
-                && let Some(&first) = more.first()
+                && let Some(first) = more.clone().next()
             {
-                *self = Self::Uniform(first);
+                *value = first;
             }
-            let value = if count == 0 {
-                more.first().copied().unwrap_or(value)
-            } else {
-                value
-            };
-            if more.iter().all(|&x| x == value) {
+            let value = *value;
+            if more.clone().all(|x| x == value) {
                 return;
             }
             *self = Self::Each(vec![value; count]);
         }
         if let Self::Each(values) = self {
-            values.extend_from_slice(more);
+            values.extend(more);
         }
     }
 }

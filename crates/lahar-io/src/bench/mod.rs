@@ -15,7 +15,7 @@ use lahar::{Isa, PhaseTimes, Simulate};
 use serde::{Deserialize, Serialize};
 
 use crate::error::SceneError;
-use crate::scene::{Limits, Precision, Scene};
+use crate::scene::{Precision, Scene};
 pub use machine::{Machine, seconds};
 pub use report::{Report, growth};
 
@@ -186,13 +186,12 @@ const MOST_SUBSTEPS: u64 = 1000;
 /// # Errors
 /// If so many particles cannot be.
 pub fn scene(case: &Case, particles: Option<f64>) -> Result<Scene, SceneError> {
-    let limits = Limits { memory: u64::MAX };
     let mut set: Vec<(String, String)> = case
         .set
         .iter()
         .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
         .collect();
-    let scene = Scene::load_within(case.scene, &set, &limits)?;
+    let scene = Scene::load(case.scene, &set)?;
     let Some(particles) = particles else {
         return Ok(scene);
     };
@@ -200,7 +199,7 @@ pub fn scene(case: &Case, particles: Option<f64>) -> Result<Scene, SceneError> {
     let finer = (particles / scene.expected_particles()).powf(1.0 / scene.dimension as f64);
     let cells = (cells_per_metre(&scene) * finer).round().max(1.0);
     set.push(("dx".to_owned(), format!("{:?}", 1.0 / cells)));
-    Scene::load_within(case.scene, &set, &limits)
+    Scene::load(case.scene, &set)
 }
 
 fn cells_per_metre(scene: &Scene) -> f64 {
@@ -234,9 +233,9 @@ pub fn measure(case: &Case, options: &Options) -> Result<Measured, BenchError> {
         time += took;
     }
     let end = simulation.phase_times();
-    let waited = machine::waited()
-        .zip(waited)
-        .map(|(end, start)| (end - start) / (time * rayon::current_num_threads() as f64));
+    let waited = machine::waited().zip(waited).map(|(end, start)| {
+        ((end - start) / (time * rayon::current_num_threads() as f64)).min(1.0)
+    });
     let steps = (particles * substeps) as f64;
     let mut sorted = rates.clone();
     sorted.sort_by(f64::total_cmp);

@@ -261,14 +261,31 @@ fn add_motion<const D: usize>(batch: &mut ParticleBatch<D>, body: &Body<D>, dx: 
     let count = batch.position.len();
     batch.velocity.resize(count, [0.0; D]);
     batch.affine.resize(count, [[0.0; D]; D]);
-    let velocity = body.velocity.at(&batch.position);
-    for (((x, v), c), given) in batch
-        .position
-        .iter()
-        .zip(&mut batch.velocity)
-        .zip(&mut batch.affine)
-        .zip(velocity)
-    {
+    let positions = batch.position.par_chunks(AT_A_TIME);
+    let velocities = batch.velocity.par_chunks_mut(AT_A_TIME);
+    let affine = batch.affine.par_chunks_mut(AT_A_TIME);
+    positions
+        .zip(velocities)
+        .zip(affine)
+        .for_each(|((position, velocity), affine)| {
+            move_by(body, center, dx, position, velocity, affine);
+        });
+}
+
+/// Particles whose formulas are evaluated together.
+const AT_A_TIME: usize = 1 << 14;
+
+/// [`add_motion`] to some of the particles of a body.
+fn move_by<const D: usize>(
+    body: &Body<D>,
+    center: [f64; D],
+    dx: f64,
+    position: &[[f64; D]],
+    velocity: &mut [[f64; D]],
+    affine: &mut [[[f64; D]; D]],
+) {
+    let given = body.velocity.at(position);
+    for (((x, v), c), given) in position.iter().zip(velocity).zip(&mut *affine).zip(given) {
         for i in 0..D {
             v[i] += given[i]
                 + (0..D)
@@ -279,18 +296,18 @@ fn add_motion<const D: usize>(batch: &mut ParticleBatch<D>, body: &Body<D>, dx: 
             }
         }
     }
-    if constant {
+    if body.velocity.is_constant() {
         return;
     }
     // The gradient over a cell, which is what the grid can tell.
     for j in 0..D {
         let beside = |step: f64| -> Vec<[f64; D]> {
-            let mut places = batch.position.clone();
+            let mut places = position.to_vec();
             places.iter_mut().for_each(|x| x[j] += step);
             body.velocity.at(&places)
         };
         let (low, high) = (beside(-0.5 * dx), beside(0.5 * dx));
-        for ((c, low), high) in batch.affine.iter_mut().zip(low).zip(high) {
+        for ((c, low), high) in affine.iter_mut().zip(low).zip(high) {
             for i in 0..D {
                 c[i][j] += (high[i] - low[i]) / dx;
             }
