@@ -20,6 +20,7 @@
 mod columns;
 mod filling;
 mod surfaces;
+mod tile;
 
 use crate::boundary::collider::Moving;
 use crate::boundary::impulse::Taken;
@@ -33,16 +34,19 @@ use crate::setup::Transfer;
 use crate::store::{Group, block_edge};
 use crate::transfer::Scheme;
 use columns::Columns;
+use fearless_simd::Simd;
 pub(crate) use filling::OUTSIDE;
+use tile::{Piece, axis_pieces};
+pub(crate) use tile::{Reach, Tiles, tile_edge, tile_plane};
 
 /// Numbers a node and plane.
 pub(crate) const QUAD: usize = 4;
 
+/// Nodes that are read and written together.
+const ROW: usize = 4;
+
 /// Nodes a block, in 2D and 3D.
 pub(crate) const BLOCK_NODES: usize = 64;
-
-/// Nodes behind a tile, so that the row of four at its very end stays inside.
-const TILE_PADDING: usize = 4;
 
 /// A part of a block that a tile covers: node `l` of the block (on each axis, `low ≤ l < high`) is
 /// node `l + shift` of the tile.
@@ -96,6 +100,8 @@ pub(crate) struct Grid<T, const D: usize> {
     links_of_tile: Vec<u32>,
     columns: Columns<D>,
     tiles: Vec<T>,
+    /// By tile, what its last scatters reached.
+    reach: Vec<Reach<D>>,
     nodes: Vec<T>,
     /// Δt a of forces that differ from node to node, D numbers a node; empty if there are none.
     impulses: Vec<T>,
@@ -122,6 +128,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             links_of_tile: vec![0],
             columns: Columns::default(),
             tiles: Vec::new(),
+            reach: Vec::new(),
             nodes: Vec::new(),
             impulses: Vec::new(),
             blend: match scheme.transfer {
@@ -141,6 +148,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         let reals = [&self.tiles, &self.nodes, &self.impulses, &self.excess];
         size_of::<T>() * reals.map(Vec::capacity).into_iter().sum::<usize>()
             + size_of::<Link<D>>() * self.links.capacity()
+            + size_of::<Reach<D>>() * self.reach.capacity()
             + 4 * (self.links_by_tile.capacity()
                 + self.links_of_block.capacity()
                 + self.links_of_tile.capacity())
@@ -162,8 +170,12 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
     }
 
     /// The tiles, to scatter to.
-    pub(crate) fn tiles_mut(&mut self) -> &mut [T] {
-        &mut self.tiles
+    pub(crate) fn tiles_mut(&mut self) -> Tiles<'_, T, D> {
+        Tiles {
+            len: self.tile_len(),
+            numbers: &mut self.tiles,
+            reach: &mut self.reach,
+        }
     }
 
     /// Makes blocks and tiles for where the particles of `groups` are now, and tells their runs
@@ -192,6 +204,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         // Stale numbers are never read: a tile's first scatter clears it, a block's update writes it.
         self.tiles
             .resize(self.tile_blocks.len() * self.tile_len(), T::default());
+        self.reach.resize(self.tile_blocks.len(), Reach::NOTHING);
         self.nodes
             .resize(self.blocks.len() * self.block_len(), T::default());
     }
@@ -399,9 +412,9 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         let this = &*self;
         parallel::for_chunks(&mut nodes, block_len, 0, grain, &|first, piece| {
             let _flush = crate::float_mode::FlushToZero::enter();
-            on_level!(isa.0, _simd => {
+            on_level!(isa.0, simd => {
                 for (index, block) in piece.chunks_exact_mut(block_len).enumerate() {
-                    this.gather_tiles(first + index, block);
+                    this.gather_tiles(simd, first + index, block);
                     then(this, first + index, block);
                 }
             });
@@ -411,34 +424,39 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
 
     /// (1), (2): the sums over particles that the tiles have begun.
     #[inline(always)]
-    fn gather_tiles(&self, block: usize, nodes: &mut [T]) {
+    fn gather_tiles<S: Simd>(&self, simd: S, block: usize, nodes: &mut [T]) {
         nodes.fill(T::default());
         let range = self.links_of_block[block] as usize..self.links_of_block[block + 1] as usize;
         for link in &self.links[range] {
             let tile = &self.tiles[link.tile as usize * self.tile_len()..][..self.tile_len()];
+            let reach = self.reach[link.tile as usize];
             for plane in 0..self.planes {
                 let from = &tile[plane * self.tile_plane()..];
                 let to = &mut nodes[plane * BLOCK_NODES * QUAD..];
-                self.rows(link, |block_at, tile_at, len| {
-                    let sums = to[block_at..block_at + len].chunks_exact_mut(QUAD);
-                    for (sum, part) in sums.zip(from[tile_at..tile_at + len].chunks_exact(QUAD)) {
-                        for lane in 0..QUAD {
-                            sum[lane] += part[lane];
-                        }
-                    }
+                self.rows(link, reach, |block_at, tile_at, len| {
+                    T::add_quads(simd, &mut to[block_at..][..len], &from[tile_at..][..len]);
                 });
             }
         }
     }
 
-    /// Calls `row(place in the block, place in the tile, numbers)` for each run of nodes of `link`.
+    /// Calls `row(place in the block, place in the tile, numbers)` for each run of nodes of `link` within
+    /// `reach`.
     #[inline(always)]
-    fn rows(&self, link: &Link<D>, mut row: impl FnMut(usize, usize, usize)) {
+    fn rows(&self, link: &Link<D>, reach: Reach<D>, mut row: impl FnMut(usize, usize, usize)) {
         let edge = block_edge(D);
         let last = D - 1;
         let at = |axis: usize, node: usize| (node as isize + link.shift[axis] as isize) as usize;
-        let low = link.low.map(usize::from);
-        let high = link.high.map(usize::from);
+        let (mut low, mut high) = ([0; D], [0; D]);
+        for axis in 0..D {
+            let in_block =
+                |node: u8| (isize::from(node) - link.shift[axis] as isize).max(0) as usize;
+            low[axis] = usize::from(link.low[axis]).max(in_block(reach.low[axis]));
+            high[axis] = usize::from(link.high[axis]).min(in_block(reach.high[axis]));
+            if low[axis] >= high[axis] {
+                return;
+            }
+        }
         let len = (high[last] - low[last]) * QUAD;
         for i in low[0]..high[0] {
             if D == 2 {
@@ -498,9 +516,25 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         }
     }
 
-    /// Copies the nodes that tile `tile` covers.
+    /// Copies the nodes that tile `tile` covers, as far as `reach`.
+    pub(crate) fn load_tile(&self, isa: IsaToken, tile: usize, reach: Reach<D>, out: &mut [T]) {
+        on_level!(isa.0, simd => self.copy_nodes(simd, tile, reach, out));
+    }
+
+    /// What to load of tile `tile` for the particles that were scattered to it last: rows are read four nodes
+    /// at a time.
+    pub(crate) fn reach_of_rows(&self, tile: usize) -> Reach<D> {
+        let kernel_nodes = self.tile_edge - block_edge(D) - 1;
+        let mut reach = self.reach[tile];
+        reach.high[D - 1] += (ROW - kernel_nodes) as u8;
+        if usize::from(reach.high[D - 1]) > self.tile_edge {
+            return Reach::WHOLE; // such a row ends in another
+        }
+        reach
+    }
+
     #[inline(always)]
-    pub(crate) fn load_tile(&self, tile: usize, out: &mut [T]) {
+    fn copy_nodes<S: Simd>(&self, simd: S, tile: usize, reach: Reach<D>, out: &mut [T]) {
         let range = self.links_of_tile[tile] as usize..self.links_of_tile[tile + 1] as usize;
         for &link in &self.links_by_tile[range] {
             let link = &self.links[link as usize];
@@ -508,14 +542,8 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             for plane in 0..self.planes {
                 let from = &block[plane * BLOCK_NODES * QUAD..];
                 let to = &mut out[plane * self.tile_plane()..];
-                self.rows(link, |block_at, tile_at, len| {
-                    // Quad by quad: rows are too short for a call to the system's copy.
-                    let copies = to[tile_at..tile_at + len].chunks_exact_mut(QUAD);
-                    for (copy, node) in
-                        copies.zip(from[block_at..block_at + len].chunks_exact(QUAD))
-                    {
-                        copy.copy_from_slice(node);
-                    }
+                self.rows(link, reach, |block_at, tile_at, len| {
+                    T::copy_quads(simd, &mut to[tile_at..][..len], &from[block_at..][..len]);
                 });
             }
         }
@@ -556,49 +584,4 @@ const fn axis_index<const D: usize>(index: usize, axis: usize) -> usize {
         1 => index / edge % edge,
         _ => index / (edge * edge),
     }
-}
-
-/// Nodes along a tile: the block, one cell of drift on either side, and the kernel's reach.
-pub(crate) const fn tile_edge<const D: usize>(kernel_nodes: usize) -> usize {
-    block_edge(D) + 2 + (kernel_nodes - 1)
-}
-
-/// Numbers of one plane of a tile with that edge.
-pub(crate) const fn tile_plane<const D: usize>(tile_edge: usize) -> usize {
-    (tile_edge.pow(D as u32) + TILE_PADDING) * QUAD
-}
-
-/// The part of a tile's axis that lies in one block.
-#[derive(Clone, Copy, Debug)]
-struct Piece {
-    block: i32,
-    shift: i16,
-    low: u8,
-    high: u8,
-}
-
-/// Cuts the nodes that a tile covers on one axis into blocks, wrapped if the axis is periodic.
-fn axis_pieces<const D: usize>(block: i32, tile_edge: usize, period: Option<i64>) -> Vec<Piece> {
-    let edge = block_edge(D) as i64;
-    let first = edge * i64::from(block) - 1;
-    let mut pieces: Vec<Piece> = Vec::with_capacity(4);
-    for tile_node in 0..tile_edge as i64 {
-        let mut node = first + tile_node;
-        if let Some(period) = period {
-            node = node.rem_euclid(period);
-        }
-        let in_block = node.div_euclid(edge) as i32;
-        let local = node.rem_euclid(edge);
-        let shift = (tile_node - local) as i16;
-        match pieces.last_mut() {
-            Some(last) if last.block == in_block && last.shift == shift => last.high += 1,
-            _ => pieces.push(Piece {
-                block: in_block,
-                shift,
-                low: local as u8,
-                high: local as u8 + 1,
-            }),
-        }
-    }
-    pieces
 }

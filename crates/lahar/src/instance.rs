@@ -8,7 +8,7 @@
 use crate::boundary::collider::Moving;
 use crate::boundary::impulse::Taken;
 use crate::boundary::walls::Walls;
-use crate::grid::{Grid, NodeForces};
+use crate::grid::{Grid, NodeForces, Tiles};
 use crate::material::{IsaToken, Law, Model, VolumeCorrection};
 use crate::math::Lanes;
 use crate::store::Group;
@@ -36,7 +36,7 @@ pub trait Kernels<const D: usize>: Lanes {
         isa: IsaToken,
         dt: f64,
         what: What,
-        tiles: &mut [Self],
+        tiles: Tiles<'_, Self, D>,
     );
     /// The tiles' sums to the nodes, for gauges and for (7g).
     #[doc(hidden)]
@@ -100,7 +100,7 @@ macro_rules! instance {
                 isa: IsaToken,
                 dt: f64,
                 what: What,
-                tiles: &mut [Self],
+                tiles: Tiles<'_, Self, $d>,
             ) {
                 scatter::scatter(group, scheme, isa, dt, what, tiles);
             }

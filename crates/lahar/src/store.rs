@@ -178,6 +178,12 @@ pub(crate) fn locate(cells: f64, offset: f64, dimension: usize) -> (i32, f64) {
 /// spare.
 const MOST_COLUMNS: usize = 32;
 
+/// The rows of columns; empty ones behind them.
+pub(crate) fn slices<T>(columns: &[Vec<T>]) -> [&[T]; MOST_COLUMNS] {
+    let mut columns = columns.iter();
+    core::array::from_fn(|_| columns.next().map_or(&[][..], |column| column))
+}
+
 /// Columns of storage, each a slice, that can be cut in two at a row.
 pub(crate) struct ColumnsMut<'a, T> {
     pub(crate) slices: [&'a mut [T]; MOST_COLUMNS],

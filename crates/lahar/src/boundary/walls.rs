@@ -267,11 +267,14 @@ impl<const D: usize> Walls<D> {
     }
 
     /// Whether `node` is beyond a wall on its plane.
-    #[inline(always)]
     pub(crate) fn is_behind_plane(&self, node: [i64; D]) -> bool {
-        self.planes
-            .iter()
-            .any(|wall| (node[wall.axis] - wall.node) * i64::from(wall.inward) < 0)
+        (0..D).any(|axis| self.is_behind_on(axis, node[axis]))
+    }
+
+    /// Whether nodes with that number on `axis` are beyond a wall across it.
+    pub(crate) fn is_behind_on(&self, axis: usize, node: i64) -> bool {
+        let mut across = self.planes.iter().filter(|wall| wall.axis == axis);
+        across.any(|wall| (node - wall.node) * i64::from(wall.inward) < 0)
     }
 
     /// Whether a wall on its plane has any of the nodes `first .. first + edge` beyond it.

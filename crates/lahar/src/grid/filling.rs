@@ -4,7 +4,7 @@
 //! node's quad. Nodes answer with the fluid's mean J − 1, and with how much more room the particles
 //! around say they take than there is.
 
-use super::{BLOCK_NODES, Grid, QUAD, axis_index};
+use super::{BLOCK_NODES, Grid, QUAD, Reach, axis_index};
 use crate::boundary::walls::Walls;
 use crate::material::IsaToken;
 use crate::math::Lanes;
@@ -15,6 +15,9 @@ use crate::transfer::LARGEST_TILE;
 /// A node whose cell is less full than this is outside of the bodies. Far from both 0 and 1, so that
 /// the unevenness of particles, some percent, does not decide which nodes are asked.
 pub(crate) const OUTSIDE: f64 = 0.5;
+
+/// Nodes along a block, in 2D; fewer in 3D.
+const LARGEST_EDGE: usize = block_edge(2);
 
 /// What the nodes answer, as a quad.
 const MEAN: usize = 0;
@@ -32,71 +35,100 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         self.columns.mirror_volumes(&mut self.nodes, self.planes);
         let cell = T::from_f64(dx.powi(D as i32));
         let mut excess = core::mem::take(&mut self.excess);
-        excess.resize(self.tile_blocks.len() * BLOCK_NODES, T::default());
-        let grain = parallel::grain(self.tile_blocks.len(), 16);
+        excess.resize(self.blocks.len() * BLOCK_NODES, T::default());
+        let grain = parallel::grain(self.blocks.len(), 16);
         let this = &*self;
         parallel::for_chunks(&mut excess, BLOCK_NODES, 0, grain, &|first, piece| {
             let _flush = crate::float_mode::FlushToZero::enter();
             let mut tile = [T::default(); LARGEST_TILE];
             for (index, excess) in piece.chunks_exact_mut(BLOCK_NODES).enumerate() {
-                this.load_tile(first + index, &mut tile);
-                this.excess(first + index, &tile, walls, cell, excess);
+                let block = first + index;
+                match this.tile_blocks.binary_search(&this.blocks[block]) {
+                    Ok(number) => {
+                        this.load_tile(isa, number, Reach::WHOLE, &mut tile);
+                        this.excess(block, &tile, walls, cell, excess);
+                    }
+                    Err(_) => this.excess_without_tile(block, walls, cell, excess),
+                }
             }
         });
         self.excess = excess;
-        let apart = self.excess_without_tiles(walls, cell);
         self.answer();
-        for (place, excess) in apart {
-            self.nodes[place + EXCESS] = excess;
-        }
         // Nodes beyond walls answer as their images do.
         self.columns
             .mirror_answers(&mut self.nodes, self.planes, EXCESS);
     }
 
-    /// The excess on the nodes of tile number `index`'s own block.
-    fn excess(&self, index: usize, tile: &[T], walls: &Walls<D>, cell: T, out: &mut [T]) {
-        let edge = block_edge(D) as i64;
-        let first = self.tile_blocks[index].map(|block| i64::from(block) * edge);
-        let tile_edge = self.tile_edge as i64;
-        // A tile begins one node before its block.
-        let quad_of = |node: [i64; D]| {
-            let at = (0..D).fold(0, |at, axis| {
-                at * tile_edge + (node[axis] - first[axis] + 1)
-            });
-            &tile[at as usize * QUAD..][..QUAD]
+    /// The excess on the nodes of a block that has a tile: what [`excess_at`] says, for a row of nodes at a
+    /// time. A tile begins one node before its block.
+    fn excess(&self, block: usize, tile: &[T], walls: &Walls<D>, cell: T, out: &mut [T]) {
+        let edge = block_edge(D);
+        let full = cell * T::from_f64(OUTSIDE);
+        let before = self.blocks[block].map(|b| i64::from(b) * edge as i64 - 1);
+        // The nodes on an axis that are behind a wall, a bit each: the block's and one on either side.
+        let behind: [u32; D] = core::array::from_fn(|axis| {
+            let is_behind = |node: usize| walls.is_behind_on(axis, before[axis] + node as i64);
+            (0..edge + 2).fold(0, |bits, node| bits | u32::from(is_behind(node)) << node)
+        });
+        let all = (1 << (edge + 2)) - 1;
+        // Rows along the last axis, of nodes that are full or behind a wall; [i][j], or [0][i] in 2D.
+        let planes = if D == 2 { 1 } else { edge + 2 };
+        let row_at = |i: usize, j: usize| (i * self.tile_edge + j) * self.tile_edge;
+        let hidden = |i: usize, j: usize| {
+            let by_i = D == 3 && behind[0] >> i & 1 == 1;
+            by_i || behind[D - 2] >> j & 1 == 1
         };
-        for (local, out) in out.iter_mut().enumerate() {
-            let node =
-                core::array::from_fn(|axis| first[axis] + axis_index::<D>(local, axis) as i64);
-            *out = excess_at(node, walls, cell, |node| Some(quad_of(node)));
+        let mut rows = [[0_u32; LARGEST_EDGE + 2]; LARGEST_EDGE + 2];
+        for i in 0..planes {
+            for j in 0..edge + 2 {
+                let quads = &tile[row_at(i, j) * QUAD..][..(edge + 2) * QUAD];
+                let volumes = quads.chunks_exact(QUAD).map(|quad| quad[0]).enumerate();
+                let is_full =
+                    volumes.fold(0, |bits, (k, volume)| bits | u32::from(volume >= full) << k);
+                let row = is_full | behind[D - 1] | if hidden(i, j) { all } else { 0 };
+                // Its neighbours on the row, too.
+                rows[i][j] = row & row >> 1 & row << 1;
+            }
+        }
+        for (row, out) in out.chunks_exact_mut(edge).enumerate() {
+            let (i, j) = if D == 2 {
+                (0, row + 1)
+            } else {
+                (row / edge + 1, row % edge + 1)
+            };
+            let beside = if D == 2 { 0..=0 } else { i - 1..=i + 1 };
+            let around = beside.flat_map(|i| &rows[i][j - 1..=j + 1]);
+            let mut inside = around.fold(all, |inside, row| inside & row) & !behind[D - 1];
+            if hidden(i, j) {
+                inside = 0;
+            }
+            for (k, out) in out.iter_mut().enumerate() {
+                let volumes = &tile[(row_at(i, j) + k + 1) * QUAD..][..QUAD];
+                *out = if inside >> (k + 1) & 1 == 1 {
+                    excess_of(volumes, cell)
+                } else {
+                    T::default()
+                };
+            }
         }
     }
 
-    /// The excess on the nodes of blocks that no particle is in, where it is not zero: by the place of
-    /// the node's quad. Few nodes there are full.
-    fn excess_without_tiles(&self, walls: &Walls<D>, cell: T) -> Vec<(usize, T)> {
+    /// The excess on the nodes of a block that no particle is in. Few of them are full.
+    fn excess_without_tile(&self, block: usize, walls: &Walls<D>, cell: T, out: &mut [T]) {
         let edge = block_edge(D) as i64;
         let full = cell * T::from_f64(OUTSIDE);
-        let mut found = Vec::new();
-        for (block, coordinates) in self.blocks.iter().enumerate() {
-            if self.tile_blocks.binary_search(coordinates).is_ok() {
-                continue;
-            }
-            for local in 0..BLOCK_NODES {
-                let place = block * self.block_len() + local * QUAD;
-                if self.nodes[place] >= full {
-                    let node = core::array::from_fn(|axis| {
-                        i64::from(coordinates[axis]) * edge + axis_index::<D>(local, axis) as i64
-                    });
-                    let excess = excess_at(node, walls, cell, |node| {
-                        Some(&self.nodes[self.quad_of_node(walls.canonical(node))?..][..QUAD])
-                    });
-                    found.push((place, excess));
-                }
+        let first = self.blocks[block].map(|b| i64::from(b) * edge);
+        for (local, out) in out.iter_mut().enumerate() {
+            let volume = self.nodes[block * self.block_len() + local * QUAD];
+            *out = T::default();
+            if volume >= full {
+                let node =
+                    core::array::from_fn(|axis| first[axis] + axis_index::<D>(local, axis) as i64);
+                *out = excess_at(node, walls, cell, |node| {
+                    Some(&self.nodes[self.quad_of_node(walls.canonical(node))?..][..QUAD])
+                });
             }
         }
-        found
     }
 
     /// Where the quad of a node is, if there is that node.
@@ -112,31 +144,26 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
 
     /// Replaces the nodes' quads by their answers.
     fn answer(&mut self) {
-        let mut tile = 0;
-        let zero = T::default();
         let block_len = self.block_len();
-        for (block, nodes) in self
-            .blocks
-            .iter()
-            .zip(self.nodes.chunks_exact_mut(block_len))
-        {
-            while self.tile_blocks.get(tile).is_some_and(|of| of < block) {
-                tile += 1;
+        let grain = parallel::grain(self.blocks.len(), 64);
+        let excess = &self.excess;
+        parallel::for_chunks(&mut self.nodes, block_len, 0, grain, &|first, piece| {
+            let _flush = crate::float_mode::FlushToZero::enter();
+            let of_piece = excess[first * BLOCK_NODES..].chunks_exact(BLOCK_NODES);
+            for (nodes, excess) in piece.chunks_exact_mut(block_len).zip(of_piece) {
+                let quads = nodes[..BLOCK_NODES * QUAD].chunks_exact_mut(QUAD);
+                for (quad, &excess) in quads.zip(excess) {
+                    let mean = if quad[2] > T::default() {
+                        quad[3] / quad[2] // (7h)
+                    } else {
+                        T::default()
+                    };
+                    quad.fill(T::default());
+                    quad[MEAN] = mean;
+                    quad[EXCESS] = excess;
+                }
             }
-            let excess = (self.tile_blocks.get(tile) == Some(block))
-                .then(|| &self.excess[tile * BLOCK_NODES..][..BLOCK_NODES]);
-            let quads = nodes[..BLOCK_NODES * QUAD].chunks_exact_mut(QUAD);
-            for (local, quad) in quads.enumerate() {
-                let mean = if quad[2] > zero {
-                    quad[3] / quad[2] // (7h)
-                } else {
-                    zero
-                };
-                quad.fill(zero);
-                quad[MEAN] = mean;
-                quad[EXCESS] = excess.map_or(zero, |excess| excess[local]);
-            }
-        }
+        });
     }
 }
 
@@ -153,9 +180,14 @@ fn excess_at<'a, T: Lanes, const D: usize>(
         && is_full(node)
         && neighbours(node).all(|beside| walls.is_behind_plane(beside) || is_full(beside));
     match quad_of(node) {
-        Some(volumes) if inside => (volumes[0] + volumes[1]) / cell - T::from_f64(1.0), // (7i)
+        Some(volumes) if inside => excess_of(volumes, cell),
         _ => T::default(),
     }
+}
+
+/// How much more room the particles around an inner node say they take than there is, in cells.
+fn excess_of<T: Lanes>(volumes: &[T], cell: T) -> T {
+    (volumes[0] + volumes[1]) / cell - T::from_f64(1.0) // (7i)
 }
 
 /// The nodes around `node`, itself among them.

@@ -7,7 +7,7 @@
 
 use super::{ConstitutiveModel, Model, Strain, VolumeCorrection, VolumeRule, for_model};
 use crate::dispatch::on_level;
-use crate::math::{Lanes, Matrix, Real};
+use crate::math::{Lanes, Matrix, Real, Vector};
 use fearless_simd::{Level, Simd};
 
 /// Particles worked on between two looks at the tile.
@@ -44,7 +44,7 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
     fn jacobian_minus_one(
         &self,
         isa: IsaToken,
-        strain: &[Vec<T>],
+        strain: &[&[T]],
         start: usize,
         count: usize,
         out: &mut [T],
@@ -54,8 +54,8 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
     fn kirchhoff_stress(
         &self,
         isa: IsaToken,
-        strain: &[Vec<T>],
-        affine: &[Vec<T>],
+        strain: &[&[T]],
+        affine: &[&[T]],
         start: usize,
         count: usize,
         out: &mut [T],
@@ -160,6 +160,36 @@ pub(crate) fn load_part<S: Simd, T: Lanes>(simd: S, slice: &[T], count: usize) -
     }
 }
 
+/// A vector of a register of particles from its columns.
+#[inline(always)]
+pub(crate) fn load_vector<S: Simd, T: Lanes, const D: usize>(
+    simd: S,
+    columns: &[&[T]],
+    at: usize,
+    left: usize,
+) -> Vector<T::Of<S>, D> {
+    let mut v = Vector([load_part(simd, &columns[0][at..], left); D]);
+    for axis in 1..D {
+        v[axis] = load_part(simd, &columns[axis][at..], left);
+    }
+    v
+}
+
+/// A matrix from its columns of numbers, column by column.
+#[inline(always)]
+pub(crate) fn load_matrix<S: Simd, T: Lanes, const D: usize>(
+    simd: S,
+    columns: &[&[T]],
+    at: usize,
+    left: usize,
+) -> Matrix<T::Of<S>, D> {
+    let mut m = Matrix([load_vector(simd, columns, at, left); D]);
+    for j in 1..D {
+        m.0[j] = load_vector(simd, &columns[j * D..], at, left);
+    }
+    m
+}
+
 /// The first `count` lanes to `slice`.
 #[inline(always)]
 pub(crate) fn store_part<S: Simd, T: Lanes>(value: T::Of<S>, slice: &mut [T], count: usize) {
@@ -192,7 +222,7 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for 
     fn jacobian_minus_one(
         &self,
         isa: IsaToken,
-        strain: &[Vec<T>],
+        strain: &[&[T]],
         start: usize,
         count: usize,
         out: &mut [T],
@@ -203,8 +233,8 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for 
     fn kirchhoff_stress(
         &self,
         isa: IsaToken,
-        strain: &[Vec<T>],
-        affine: &[Vec<T>],
+        strain: &[&[T]],
+        affine: &[&[T]],
         start: usize,
         count: usize,
         out: &mut [T],
@@ -287,8 +317,8 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for 
 fn stress_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     simd: S,
     model: &M,
-    strain: &[Vec<T>],
-    affine: &[Vec<T>],
+    strain: &[&[T]],
+    affine: &[&[T]],
     start: usize,
     count: usize,
     out: &mut [T],
@@ -297,8 +327,7 @@ fn stress_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     while p < count {
         let left = count - p;
         let lanes = M::Strain::read(|column| load_part(simd, &strain[column][start + p..], left));
-        let gradient =
-            Matrix::from_fn(|i, j| load_part(simd, &affine[j * D + i][start + p..], left));
+        let gradient = load_matrix(simd, affine, start + p, left);
         let tau = model.kirchhoff_stress(lanes, gradient);
         for j in 0..D {
             for i in 0..D {
@@ -312,7 +341,7 @@ fn stress_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
 #[inline(always)]
 fn jacobian_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     simd: S,
-    strain: &[Vec<T>],
+    strain: &[&[T]],
     start: usize,
     count: usize,
     out: &mut [T],
@@ -345,9 +374,13 @@ fn advance_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     while p < count {
         let left = count - p;
         let before = M::Strain::read(|column| load_part(simd, &strain[column][start + p..], left));
-        let increment =
-            Matrix::from_fn(|i, j| load_part(simd, &increment[(j * D + i) * CHUNK + p..], left));
-        let after = model.advance(before, increment); // (7)
+        let mut change = Matrix([Vector([T::load(simd, &increment[p..]); D]); D]);
+        for j in 0..D {
+            for i in 0..D {
+                change.0[j][i] = T::load(simd, &increment[(j * D + i) * CHUNK + p..]);
+            }
+        }
+        let after = model.advance(before, change); // (7)
         after.write(|column, value| {
             store_part::<S, T>(value, &mut strain[column][start + p..], left)
         });

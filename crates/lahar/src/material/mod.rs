@@ -16,7 +16,7 @@ mod strain;
 
 pub use corotated::Corotated;
 pub use fluid::{Eos, Fluid, JacobianUpdate, SMALLEST_JACOBIAN, TORN, ViscousStress};
-pub(crate) use law::{CHUNK, built_in, load_part, store_part};
+pub(crate) use law::{CHUNK, built_in, load_matrix, load_part, load_vector, store_part};
 pub use law::{IsaToken, Law, ParticleState, law};
 pub use neo_hookean::{LOGARITHM_ENDS, NeoHookean};
 pub use none::Dust;

@@ -5,7 +5,7 @@
 use super::real::{Mask, Real, Scalar};
 use core::ops::{Add, Mul};
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x4, f32x16, f64x2, f64x4, f64x8, mask32x16, mask64x8};
+use fearless_simd::{f32x4, f32x16, f64x4, f64x8, mask32x16, mask64x8};
 
 /// Scalars that know their lane type on an instruction set.
 pub trait Lanes: Scalar {
@@ -26,6 +26,11 @@ pub trait Lanes: Scalar {
 
     /// Four quads side by side: a stencil row of four nodes.
     type Row<S: Simd>: Row<S, Self>;
+
+    /// `sum += part`, number by number; whole quads.
+    fn add_quads<S: Simd>(simd: S, sum: &mut [Self], part: &[Self]);
+    /// `to = from`; whole quads. For rows that are too short for a call to the system's copy.
+    fn copy_quads<S: Simd>(simd: S, to: &mut [Self], from: &[Self]);
 }
 
 /// Four nodes of four numbers each, as they lie in a tile.
@@ -47,7 +52,7 @@ pub trait Row<S: Simd, T>: Copy + Add<Output = Self> + Mul<Output = Self> {
 }
 
 macro_rules! lanes {
-    ($scalar:ident, $vector:ident, $mask:ident, $width:literal, $part:ident, $parts:path, $row:ident) => {
+    ($scalar:ident, $vector:ident, $mask:ident, $width:literal, $row:ident, $quad:ident) => {
         impl<S: Simd> Mask for $mask<S> {
             #[inline(always)]
             fn any(self) -> bool {
@@ -142,55 +147,52 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn store_quads<S: Simd>(quads: [Self::Of<S>; 4], slice: &mut [Self]) {
-                let parts = [
-                    $parts(quads[0]),
-                    $parts(quads[1]),
-                    $parts(quads[2]),
-                    $parts(quads[3]),
-                ];
-                for (k, out) in slice[..4 * $width].chunks_exact_mut($width).enumerate() {
-                    SimdInterleaved::store_four_interleaved(
-                        [parts[0][k], parts[1][k], parts[2][k], parts[3][k]],
-                        out,
-                    );
+                let [a, b, c, d] = quads;
+                let ((ac, ac_high), (bd, bd_high)) = (a.interleave(c), b.interleave(d));
+                let ((q0, q1), (q2, q3)) = (ac.interleave(bd), ac_high.interleave(bd_high));
+                for (k, q) in [q0, q1, q2, q3].into_iter().enumerate() {
+                    q.store_slice(&mut slice[k * $width..][..$width]);
                 }
             }
             #[inline(always)]
             fn load_quads<S: Simd>(simd: S, slice: &[Self]) -> [Self::Of<S>; 4] {
-                let mut parts = [$part::load_four_interleaved(simd, &slice[..$width]); 4];
-                for k in 1..4 {
-                    parts[k] =
-                        $part::load_four_interleaved(simd, &slice[k * $width..(k + 1) * $width]);
-                }
-                let [a, b, c, d] = parts;
-                [
-                    a[0].combine(b[0]).combine(c[0].combine(d[0])),
-                    a[1].combine(b[1]).combine(c[1].combine(d[1])),
-                    a[2].combine(b[2]).combine(c[2].combine(d[2])),
-                    a[3].combine(b[3]).combine(c[3].combine(d[3])),
-                ]
+                let part = |k: usize| $vector::from_slice(simd, &slice[k * $width..][..$width]);
+                let ((ac, bd), (ac_high, bd_high)) =
+                    (part(0).deinterleave(part(1)), part(2).deinterleave(part(3)));
+                let ((a, c), (b, d)) = (ac.deinterleave(ac_high), bd.deinterleave(bd_high));
+                [a, b, c, d]
             }
             type Row<S: Simd> = $row<S>;
+            #[inline(always)]
+            fn add_quads<S: Simd>(simd: S, sum: &mut [Self], part: &[Self]) {
+                let (rows, quads) = sum.as_chunks_mut::<16>();
+                let (row_parts, quad_parts) = part.as_chunks::<16>();
+                for (sum, part) in rows.iter_mut().zip(row_parts) {
+                    (Self::Row::load(simd, sum) + Self::Row::load(simd, part)).store(sum);
+                }
+                let quads = quads.as_chunks_mut::<4>().0.iter_mut();
+                for (sum, part) in quads.zip(quad_parts.as_chunks::<4>().0) {
+                    ($quad::from_slice(simd, sum) + $quad::from_slice(simd, part)).store_slice(sum);
+                }
+            }
+            #[inline(always)]
+            fn copy_quads<S: Simd>(simd: S, to: &mut [Self], from: &[Self]) {
+                let (rows, quads) = to.as_chunks_mut::<16>();
+                let (from_rows, from_quads) = from.as_chunks::<16>();
+                for (to, from) in rows.iter_mut().zip(from_rows) {
+                    Self::Row::load(simd, from).store(to);
+                }
+                let quads = quads.as_chunks_mut::<4>().0.iter_mut();
+                for (to, from) in quads.zip(from_quads.as_chunks::<4>().0) {
+                    $quad::from_slice(simd, from).store_slice(to);
+                }
+            }
         }
     };
 }
 
-#[inline(always)]
-fn parts_f32<S: Simd>(v: f32x16<S>) -> [f32x4<S>; 4] {
-    let (low, high) = v.split();
-    let ((a, b), (c, d)) = (low.split(), high.split());
-    [a, b, c, d]
-}
-
-#[inline(always)]
-fn parts_f64<S: Simd>(v: f64x8<S>) -> [f64x2<S>; 4] {
-    let (low, high) = v.split();
-    let ((a, b), (c, d)) = (low.split(), high.split());
-    [a, b, c, d]
-}
-
-lanes!(f32, f32x16, mask32x16, 16, f32x4, parts_f32, f32x16);
-lanes!(f64, f64x8, mask64x8, 8, f64x2, parts_f64, F64Row);
+lanes!(f32, f32x16, mask32x16, 16, f32x16, f32x4);
+lanes!(f64, f64x8, mask64x8, 8, F64Row, f64x4);
 
 impl<S: Simd> Row<S, f32> for f32x16<S> {
     #[inline(always)]
@@ -211,14 +213,10 @@ impl<S: Simd> Row<S, f32> for f32x16<S> {
     }
     #[inline(always)]
     fn spread(simd: S, slice: &[f32]) -> Self {
-        let quad = f32x4::<S>::from_slice(simd, &slice[..4]);
-        let [a, b, c, d] = [
-            f32x4::<S>::splat(simd, quad[0]),
-            f32x4::<S>::splat(simd, quad[1]),
-            f32x4::<S>::splat(simd, quad[2]),
-            f32x4::<S>::splat(simd, quad[3]),
-        ];
-        a.combine(b).combine(c.combine(d))
+        // abcd abcd .. → aabb ccdd .. → aaaa bbbb cccc dddd
+        let repeated = Self::repeat(simd, slice);
+        let twice = repeated.zip_low(repeated);
+        twice.zip_low(twice)
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {

@@ -131,7 +131,9 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
             let mut columns = columns;
             let mut bounds = Bounds::NONE;
             for (index, run) in runs.iter().enumerate() {
-                self.grid.load_tile(run.tile as usize, &mut tile);
+                let number = run.tile as usize;
+                let reach = self.grid.reach_of_rows(number);
+                self.grid.load_tile(self.isa, number, reach, &mut tile);
                 let mut found = self.block(run, first_row, &tile, &mut columns, &mut stage);
                 let of_run = &mut taken[index * self.around.colliders.len()..]
                     [..self.around.colliders.len()];

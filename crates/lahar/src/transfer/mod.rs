@@ -89,6 +89,10 @@ pub(crate) struct Stage<T> {
     pub(crate) impulse: [[T; 4 * CHUNK]; 4],
     /// Where each particle's first row begins in the tile, in nodes.
     pub(crate) base: [u32; CHUNK],
+    /// The lowest places of a block's particles so far, lane by lane, on each axis.
+    pub(crate) lowest: [[T; 16]; 3],
+    /// The highest.
+    pub(crate) highest: [[T; 16]; 3],
 }
 
 impl<T: Lanes> Stage<T> {
@@ -101,6 +105,8 @@ impl<T: Lanes> Stage<T> {
             momentum: [[zero; 4 * CHUNK]; 4],
             impulse: [[zero; 4 * CHUNK]; 4],
             base: [0; CHUNK],
+            lowest: [[zero; 16]; 3],
+            highest: [[zero; 16]; 3],
         }
     }
 }

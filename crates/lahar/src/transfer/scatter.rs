@@ -1,13 +1,13 @@
 //! Particles to grid: (1)–(4).
 
 use super::{Scheme, Stage, rows, with_scheme};
-use crate::grid::tile_edge;
+use crate::grid::{Reach, Tiles, tile_edge};
 use crate::kernel::BSpline;
-use crate::material::{CHUNK, IsaToken, load_part};
+use crate::material::{CHUNK, IsaToken, load_part, load_vector};
 use crate::math::{Lanes, Matrix, Real, Vector};
 use crate::parallel;
 use crate::setup::Transfer;
-use crate::store::{Group, Layout, PerParticle, Run, block_edge};
+use crate::store::{Group, Layout, PerParticle, Run, block_edge, slices};
 use fearless_simd::Simd;
 
 /// What is scattered.
@@ -31,10 +31,11 @@ pub(crate) fn scatter<T: Lanes, const D: usize>(
     isa: IsaToken,
     dt: f64,
     what: What,
-    tiles: &mut [T],
+    tiles: Tiles<'_, T, D>,
 ) {
     let task = Task {
         group,
+        columns: &slices(&group.columns),
         scheme,
         isa,
         dt,
@@ -46,6 +47,7 @@ pub(crate) fn scatter<T: Lanes, const D: usize>(
 
 struct Task<'a, T: Lanes, const D: usize> {
     group: &'a Group<T, D>,
+    columns: &'a [&'a [T]],
     scheme: Scheme,
     isa: IsaToken,
     dt: f64,
@@ -57,38 +59,39 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         crate::grid::tile_plane::<D>(tile_edge::<D>(self.scheme.kernel_nodes()))
     }
 
-    fn tile_len(&self) -> usize {
-        self.tile_plane() * self.scheme.planes()
-    }
-
     /// `tiles` begins with tile `first_tile`.
-    fn halve(&self, runs: &[Run<D>], first_tile: u32, tiles: &mut [T], grain: usize) {
+    fn halve(&self, runs: &[Run<D>], first_tile: u32, mut tiles: Tiles<'_, T, D>, grain: usize) {
         let Some((middle, _)) = split_runs(runs, grain) else {
             let _flush = crate::float_mode::FlushToZero::enter();
             let mut stage = Stage::new();
             for run in runs {
-                let tile = &mut tiles[(run.tile - first_tile) as usize * self.tile_len()..]
-                    [..self.tile_len()];
-                self.block(run, tile, &mut stage);
+                let index = (run.tile - first_tile) as usize;
+                let tile = &mut tiles.numbers[index * tiles.len..][..tiles.len];
+                let before = if run.first {
+                    tile.fill(T::default());
+                    Reach::NOTHING
+                } else {
+                    tiles.reach[index]
+                };
+                tiles.reach[index] = before.and(self.block(run, tile, &mut stage));
             }
             return;
         };
         let (low, high) = runs.split_at(middle);
         let tile = high[0].tile;
-        let (low_tiles, high_tiles) =
-            tiles.split_at_mut((tile - first_tile) as usize * self.tile_len());
+        let (low_tiles, high_tiles) = tiles.split_at((tile - first_tile) as usize);
         parallel::join(
             || self.halve(low, first_tile, low_tiles, grain),
             || self.halve(high, tile, high_tiles, grain),
         );
     }
 
-    fn block(&self, run: &Run<D>, tile: &mut [T], stage: &mut Stage<T>) {
-        if run.first {
-            tile.fill(T::default());
-        }
-        let strain = &self.group.columns[Layout::strain(D)..];
-        let affine = &self.group.columns[Layout::affine(D)..Layout::strain(D)];
+    /// Adds the particles of `run` to their tile; says how far they reach.
+    fn block(&self, run: &Run<D>, tile: &mut [T], stage: &mut Stage<T>) -> Reach<D> {
+        stage.lowest = [[T::from_f64(f64::INFINITY); 16]; 3];
+        stage.highest = [[T::from_f64(f64::NEG_INFINITY); 16]; 3];
+        let strain = &self.columns[Layout::strain(D)..];
+        let affine = &self.columns[Layout::affine(D)..Layout::strain(D)];
         let plane = self.tile_plane();
         for start in run.rows().step_by(CHUNK) {
             let count = CHUNK.min(run.end as usize - start);
@@ -106,7 +109,29 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
                 }
             });
         }
+        self.reach(stage)
     }
+
+    /// The nodes between the lowest and the highest places of a block's particles.
+    fn reach(&self, stage: &Stage<T>) -> Reach<D> {
+        let first = first_node(D);
+        let node = |u: f64| (u.floor() + first) as u8;
+        let of = |lanes: &[T; 16], start: f64, pick: fn(f64, f64) -> f64| {
+            lanes.iter().map(|u| u.to_f64()).fold(start, pick)
+        };
+        let mut reach = Reach::NOTHING;
+        for axis in 0..D {
+            reach.low[axis] = node(of(&stage.lowest[axis], f64::INFINITY, f64::min));
+            reach.high[axis] = node(of(&stage.highest[axis], f64::NEG_INFINITY, f64::max))
+                + self.scheme.kernel_nodes() as u8;
+        }
+        reach
+    }
+}
+
+/// The node of a tile that a particle at u = 0 has for its base: tiles begin one node before their block.
+fn first_node(dimension: usize) -> f64 {
+    (block_edge(dimension) / 2) as f64 + 1.0
 }
 
 /// Where to cut a list of runs so that both halves have about as many particles: the index of the
@@ -138,21 +163,6 @@ pub(super) fn load_each<S: Simd, T: Lanes>(
     }
 }
 
-/// A vector of a register of particles from its columns.
-#[inline(always)]
-pub(super) fn load_vector<S: Simd, T: Lanes, const D: usize>(
-    simd: S,
-    columns: &[Vec<T>],
-    at: usize,
-    left: usize,
-) -> Vector<T::Of<S>, D> {
-    let mut v = Vector([load_part(simd, &columns[0][at..], left); D]);
-    for axis in 1..D {
-        v[axis] = load_part(simd, &columns[axis][at..], left);
-    }
-    v
-}
-
 /// The stencil of a register of particles: weights to the stage; returns s, the place from the base
 /// node in cells.
 #[inline(always)]
@@ -161,8 +171,7 @@ pub(super) fn stencil<S: Simd, T: Lanes, const D: usize, K: BSpline, const CLASS
     p: usize,
     stage: &mut Stage<T>,
 ) -> Vector<T::Of<S>, D> {
-    // Tiles begin one node before their block.
-    let first = u[0].lit((block_edge(D) / 2) as f64 + 1.0);
+    let first = u[0].lit(first_node(D));
     let edge = u[0].lit(tile_edge::<D>(K::NODES) as f64);
     let floor = Vector::<_, D>::from_fn(|axis| u[axis].floor());
     let frac = u - floor;
@@ -216,9 +225,14 @@ fn prepare<
     let mut p = 0;
     while p < count {
         let left = count - p;
-        let columns = &group.columns[..];
-        let s =
-            stencil::<S, T, D, K, CLASSIC>(load_vector(simd, columns, start + p, left), p, stage);
+        let columns = task.columns;
+        let u = load_vector(simd, columns, start + p, left);
+        for axis in 0..D {
+            let (lowest, highest) = (&mut stage.lowest[axis], &mut stage.highest[axis]);
+            T::store::<S>(T::load(simd, lowest).min(u[axis]), lowest);
+            T::store::<S>(T::load(simd, highest).max(u[axis]), highest);
+        }
+        let s = stencil::<S, T, D, K, CLASSIC>(u, p, stage);
         let m = load_each(simd, &group.mass, start + p, left);
         let zero = m.zero();
         let volume0 = load_each(simd, &group.volume0, start + p, left);
@@ -239,10 +253,8 @@ fn prepare<
             continue;
         }
         let v = load_vector(simd, &columns[Layout::velocity(D)..], start + p, left);
-        let tau =
-            Matrix::<_, D>::from_fn(|i, j| T::load(simd, &stage.matrix[(j * D + i) * CHUNK + p..]));
         // dx Q, column by column: its motion part and its stress part.
-        let mut affine = Matrix::scaled_identity(zero);
+        let mut affine = Matrix([Vector([zero; D]); D]);
         if apic {
             let mass_dx = m * m.lit(dx);
             for j in 0..D {
@@ -257,7 +269,13 @@ fn prepare<
         } else {
             -task.dt * K::INVERSE_INERTIA / dx
         };
-        let stress = tau * (volume0 * m.lit(scale));
+        let volume = volume0 * m.lit(scale);
+        let mut stress = affine;
+        for j in 0..D {
+            for i in 0..D {
+                stress.0[j][i] = T::load(simd, &stage.matrix[(j * D + i) * CHUNK + p..]) * volume;
+            }
+        }
         if CLASSIC {
             for axis in 0..D {
                 T::store_quads::<S>(

@@ -3,17 +3,19 @@
 //! The grid knows how much rest volume lies around a particle. Where a body is as dense as at rest that
 //! is dxᴰ a node; where there is less, what is there has expanded by as much.
 
-use super::scatter::{load_vector, split_runs, stencil};
+use super::scatter::{split_runs, stencil};
 use super::{LARGEST_TILE, Scheme, Stage, rows};
 use crate::dispatch::{on_level, on_portable};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
 use crate::material::rheology::shear_rate;
-use crate::material::{CHUNK, IsaToken, VolumeCorrection, load_part, store_part};
-use crate::math::{Lanes, Matrix, Real};
+use crate::material::{
+    CHUNK, IsaToken, VolumeCorrection, load_matrix, load_part, load_vector, store_part,
+};
+use crate::math::{Lanes, Real};
 use crate::parallel;
 use crate::setup::Kernel;
-use crate::store::{Group, Layout, Run};
+use crate::store::{Group, Layout, Run, slices};
 use fearless_simd::Simd;
 
 /// Writes J − 1 of every row of `group` to `out`, by what the grid's nodes hold of rest volume (first
@@ -27,6 +29,7 @@ pub(crate) fn expansion<T: Lanes, const D: usize>(
 ) {
     Task {
         group,
+        columns: &slices(&group.columns),
         grid,
         scheme,
         isa,
@@ -47,6 +50,7 @@ pub(crate) fn correct<T: Lanes, const D: usize>(
 ) {
     Task {
         group,
+        columns: &slices(&group.columns),
         grid,
         scheme,
         isa,
@@ -66,6 +70,7 @@ enum Read {
 
 struct Task<'a, T: Lanes, const D: usize> {
     group: &'a Group<T, D>,
+    columns: &'a [&'a [T]],
     grid: &'a Grid<T, D>,
     scheme: Scheme,
     isa: IsaToken,
@@ -85,7 +90,9 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
             let mut stage = Stage::new();
             let mut tile = [T::default(); LARGEST_TILE];
             for run in runs {
-                self.grid.load_tile(run.tile as usize, &mut tile);
+                let index = run.tile as usize;
+                let reach = self.grid.reach_of_rows(index);
+                self.grid.load_tile(self.isa, index, reach, &mut tile);
                 for start in run.rows().step_by(CHUNK) {
                     let count = CHUNK.min(run.end as usize - start);
                     let out = &mut out[start - first_row..][..count];
@@ -130,7 +137,7 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     let count = out.len();
     let mut p = 0;
     while p < count {
-        let u = load_vector::<S, T, D>(simd, &task.group.columns, start + p, count - p);
+        let u = load_vector::<S, T, D>(simd, task.columns, start + p, count - p);
         stencil::<S, T, D, K, false>(u, p, stage);
         p += T::WIDTH;
     }
@@ -147,10 +154,8 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline>(
             Read::Expansion => (cell - first) / first, // (7g)
             Read::Correction(shares) => {
                 let e = load_part(simd, &out[p..], count - p);
-                let affine = &task.group.columns[Layout::affine(D)..];
-                let c = Matrix::<T::Of<S>, D>::from_fn(|i, j| {
-                    load_part(simd, &affine[j * D + i][start + p..], count - p)
-                });
+                let affine = &task.columns[Layout::affine(D)..];
+                let c = load_matrix::<S, T, D>(simd, affine, start + p, count - p);
                 let strained = shear_rate(c);
                 let share = |rate: f64| {
                     let amount = strained * e.lit(rate);
