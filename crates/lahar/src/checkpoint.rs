@@ -16,6 +16,7 @@ use crate::simulation::{Pointer, PointerAction, Simulation};
 use crate::sort::{DRIFT_LIMIT, Escaped, in_range};
 use crate::state::{Rows, State};
 use crate::store::{Group, Layout, PerParticle, Run, block_edge};
+use crate::transfer::gather::MOST_CELLS;
 use core::fmt;
 
 /// The state of a simulation between two frames.
@@ -120,6 +121,9 @@ fn wrong<R>(array: &str, what: impl Into<String>) -> Result<R, CheckpointError> 
         what: what.into(),
     })
 }
+
+/// Cells by which sums of steps may be off: with [`DRIFT_LIMIT`] less than a tile's margin.
+const ROUNDING: f64 = 9e-4;
 
 /// What a column of a group holds, and the number of its component.
 fn column_name(column: usize, dimension: usize) -> (&'static str, usize) {
@@ -274,8 +278,10 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             return wrong("step", "with \"counts\" is no state of a time step");
         };
         let next_id = arrays.id("next_id")?;
+        // Beyond the limit rows are sorted before anything else is done, and no substep moves them further.
+        let drift = arrays.number("drift", 0.0..=DRIFT_LIMIT + MOST_CELLS)?;
         let state = State {
-            drift: arrays.number("drift", 0.0..=f64::MAX)?,
+            drift,
             uncorrected: arrays.number("uncorrected", 0.0..=f64::MAX)?,
             taken: self.read_taken(&mut arrays)?,
             readings: self.read_readings(&mut arrays)?,
@@ -289,7 +295,12 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             pointer: arrays.pointer()?,
             groups: (self.groups.iter().enumerate())
                 .map(|(index, group)| {
-                    read_rows(&mut arrays, &format!("materials.{index}"), group, next_id)
+                    read_rows(
+                        &mut arrays,
+                        &format!("materials.{index}"),
+                        group,
+                        (next_id, drift),
+                    )
                 })
                 .collect::<Result<_, _>>()?,
         };
@@ -402,7 +413,7 @@ fn read_rows<T: Instance<D>, const D: usize>(
     arrays: &mut In,
     of: &str,
     group: &Group<T, D>,
-    next_id: u32,
+    (next_id, drift): (u32, f64),
 ) -> Result<Rows<T, D>, CheckpointError> {
     let name = format!("{of}.id");
     let (_, id) = arrays.take(&name, Values::u32s)?;
@@ -410,8 +421,8 @@ fn read_rows<T: Instance<D>, const D: usize>(
     if id.iter().any(|&id| id >= next_id) {
         return wrong(&name, "has numbers that were never given");
     }
-    // A tile's margin, and rounding of sums of steps.
-    let reach = 0.5 * block_edge(D) as f64 + DRIFT_LIMIT + 1e-3;
+    // Where a row can have come to since it was sorted: what is further could be beyond its tile.
+    let reach = 0.5 * block_edge(D) as f64 + drift + ROUNDING;
     let mut columns = Vec::with_capacity(group.columns.len());
     for column in 0..group.columns.len() {
         let (what, component) = column_name(column, D);

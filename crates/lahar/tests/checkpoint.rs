@@ -326,6 +326,7 @@ fn values_out_of_place_are_refused() {
     refused("materials.1.strain.4", &set(0, f64::INFINITY));
     refused("materials.2.mass", &set(0, -1.0));
     refused("drift", &set(0, f64::NAN));
+    refused("drift", &set(0, 1e9));
     refused("step", &set(8, 0.3)); // no power of two
     refused("step", &set(6, -1.0));
     refused("counts", &|values| {
@@ -359,4 +360,20 @@ fn values_out_of_place_are_refused() {
             .what
             .contains("two particles")
     );
+}
+
+/// Found by changing arrays at random: rows further from their block than they can have moved were read
+/// beyond their tile.
+#[test]
+fn rows_beyond_their_drift_are_refused() {
+    let scene = brawl::<2>(32);
+    let mut simulation = fresh::<f64, 2>(&scene);
+    frames(&mut simulation, 1, 1..=2);
+    let mut bad = simulation.checkpoint();
+    let drift = bad.arrays.iter_mut().find(|array| array.name == "drift");
+    let drift = &mut drift.expect("it is there").values;
+    assert_ne!(*drift, Values::F64(vec![0.0]));
+    *drift = Values::F64(vec![0.0]);
+    let error = simulation.resume(bad).expect_err("rows have moved");
+    assert!(error.array.contains("position"), "{error}");
 }
