@@ -14,6 +14,7 @@ pub mod material;
 pub mod math;
 mod parallel;
 pub mod particles;
+mod prefetch;
 pub mod probe;
 pub mod reference;
 mod retry;

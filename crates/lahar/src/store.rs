@@ -39,6 +39,14 @@ impl<T: Copy + PartialEq> PerParticle<T> {
         }
     }
 
+    /// The numbers, if there is one a particle; else none.
+    pub(crate) fn each_row(&self) -> &[T] {
+        match self {
+            Self::Uniform(_) => &[],
+            Self::Each(values) => values,
+        }
+    }
+
     /// Numbers that there is room for, one a particle.
     pub(crate) fn each(&self) -> usize {
         match self {

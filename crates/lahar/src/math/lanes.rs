@@ -5,7 +5,7 @@
 use super::real::{Mask, Real, Scalar};
 use core::ops::{Add, Mul};
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x4, f32x16, f64x4, f64x8, mask32x16, mask64x8};
+use fearless_simd::{f32x4, f32x16, f64x4, f64x8, i32x16, mask32x16, mask64x8};
 
 /// Scalars that know their lane type on an instruction set.
 pub trait Lanes: Scalar {
@@ -23,6 +23,9 @@ pub trait Lanes: Scalar {
     fn store_quads<S: Simd>(quads: [Self::Of<S>; 4], slice: &mut [Self]);
     /// Reads what [`Lanes::store_quads`] writes.
     fn load_quads<S: Simd>(simd: S, slice: &[Self]) -> [Self::Of<S>; 4];
+
+    /// Writes the whole parts of `WIDTH` numbers to the start of `slice`; 0 for what is no number.
+    fn store_whole<S: Simd>(value: Self::Of<S>, slice: &mut [i32]);
 
     /// Four quads side by side: a stencil row of four nodes.
     type Row<S: Simd>: Row<S, Self>;
@@ -52,7 +55,7 @@ pub trait Row<S: Simd, T>: Copy + Add<Output = Self> + Mul<Output = Self> {
 }
 
 macro_rules! lanes {
-    ($scalar:ident, $vector:ident, $mask:ident, $width:literal, $row:ident, $quad:ident) => {
+    ($scalar:ident, $vector:ident, $mask:ident, $width:literal, $row:ident, $quad:ident, $whole:path) => {
         impl<S: Simd> Mask for $mask<S> {
             #[inline(always)]
             fn any(self) -> bool {
@@ -162,6 +165,10 @@ macro_rules! lanes {
                 let ((a, c), (b, d)) = (ac.deinterleave(ac_high), bd.deinterleave(bd_high));
                 [a, b, c, d]
             }
+            #[inline(always)]
+            fn store_whole<S: Simd>(value: Self::Of<S>, slice: &mut [i32]) {
+                $whole(value, slice);
+            }
             type Row<S: Simd> = $row<S>;
             #[inline(always)]
             fn add_quads<S: Simd>(simd: S, sum: &mut [Self], part: &[Self]) {
@@ -191,8 +198,21 @@ macro_rules! lanes {
     };
 }
 
-lanes!(f32, f32x16, mask32x16, 16, f32x16, f32x4);
-lanes!(f64, f64x8, mask64x8, 8, F64Row, f64x4);
+#[inline(always)]
+fn whole_f32<S: Simd>(value: f32x16<S>, slice: &mut [i32]) {
+    i32x16::truncate_from_precise(value).store_slice(&mut slice[..16]);
+}
+
+/// Number by number: few instruction sets convert eight at a time.
+#[inline(always)]
+fn whole_f64<S: Simd>(value: f64x8<S>, slice: &mut [i32]) {
+    for (whole, &x) in slice[..8].iter_mut().zip(value.as_slice()) {
+        *whole = x as i32;
+    }
+}
+
+lanes!(f32, f32x16, mask32x16, 16, f32x16, f32x4, whole_f32);
+lanes!(f64, f64x8, mask64x8, 8, F64Row, f64x4, whole_f64);
 
 impl<S: Simd> Row<S, f32> for f32x16<S> {
     #[inline(always)]

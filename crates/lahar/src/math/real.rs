@@ -157,8 +157,6 @@ pub trait Scalar:
     fn from_f64(value: f64) -> Self;
     /// Exact.
     fn to_f64(self) -> f64;
-    /// Towards zero.
-    fn to_index(self) -> usize;
     /// As a column of a snapshot.
     fn data(values: Vec<Self>) -> crate::particles::Data;
     /// As an array of a checkpoint.
@@ -260,10 +258,6 @@ macro_rules! scalar {
                     crate::checkpoint::Values::$variant(values) => Some(values),
                     _ => None,
                 }
-            }
-            #[inline(always)]
-            fn to_index(self) -> usize {
-                self as usize
             }
             #[inline]
             fn exp_scalar(self) -> Self {

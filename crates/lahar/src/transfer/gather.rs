@@ -12,6 +12,7 @@ use crate::kernel::BSpline;
 use crate::material::{CHUNK, IsaToken, load_part, store_part};
 use crate::math::{Lanes, Mask, Matrix, Real, Vector};
 use crate::parallel;
+use crate::prefetch::prefetch;
 use crate::setup::Transfer;
 use crate::sort::in_range;
 use crate::store::{ColumnsMut, Group, Layout, PerParticle, Run, block_edge};
@@ -169,6 +170,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         let mut bounds = Bounds::NONE;
         for row in run.rows().step_by(CHUNK) {
             let start = row - first_row;
+            prefetch(&columns.slices, start + CHUNK, CHUNK);
             let count = CHUNK.min(run.end as usize - row);
             let mut found = with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
                 chunk::<_, T, D, K, SPLIT, CLASSIC>(simd, self, start, count, plane, tile, &keep, columns, stage)

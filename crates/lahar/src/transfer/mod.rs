@@ -88,7 +88,7 @@ pub(crate) struct Stage<T> {
     /// Σ v ∇w by column.
     pub(crate) impulse: [[T; 4 * CHUNK]; 4],
     /// Where each particle's first row begins in the tile, in nodes.
-    pub(crate) base: [u32; CHUNK],
+    pub(crate) base: [i32; CHUNK],
     /// The lowest places of a block's particles so far, lane by lane, on each axis.
     pub(crate) lowest: [[T; 16]; 3],
     /// The highest.

@@ -79,7 +79,7 @@ fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
     affine: &[[T; 4 * super::CHUNK]; 4],
     weights: &[[T; 4 * super::CHUNK]; 3],
-    base: u32,
+    base: i32,
     p: usize,
     tile_edge: usize,
     tile: &mut [T],

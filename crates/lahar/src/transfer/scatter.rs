@@ -6,6 +6,7 @@ use crate::kernel::BSpline;
 use crate::material::{CHUNK, IsaToken, load_part, load_vector};
 use crate::math::{Lanes, Matrix, Real, Vector};
 use crate::parallel;
+use crate::prefetch::prefetch;
 use crate::setup::Transfer;
 use crate::store::{Group, Layout, PerParticle, Run, block_edge, slices};
 use fearless_simd::Simd;
@@ -36,6 +37,7 @@ pub(crate) fn scatter<T: Lanes, const D: usize>(
     let task = Task {
         group,
         columns: &slices(&group.columns),
+        constants: [group.mass.each_row(), group.volume0.each_row()],
         scheme,
         isa,
         dt,
@@ -48,6 +50,8 @@ pub(crate) fn scatter<T: Lanes, const D: usize>(
 struct Task<'a, T: Lanes, const D: usize> {
     group: &'a Group<T, D>,
     columns: &'a [&'a [T]],
+    /// Masses and rest volumes, if they differ.
+    constants: [&'a [T]; 2],
     scheme: Scheme,
     isa: IsaToken,
     dt: f64,
@@ -94,6 +98,8 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         let affine = &self.columns[Layout::affine(D)..Layout::strain(D)];
         let plane = self.tile_plane();
         for start in run.rows().step_by(CHUNK) {
+            prefetch(self.columns, start + CHUNK, CHUNK);
+            prefetch(&self.constants, start + CHUNK, CHUNK);
             let count = CHUNK.min(run.end as usize - start);
             let (law, out) = (&self.group.law, &mut stage.matrix);
             match self.what {
@@ -179,11 +185,7 @@ pub(super) fn stencil<S: Simd, T: Lanes, const D: usize, K: BSpline, const CLASS
     for axis in 1..D {
         base = base * edge + (floor[axis] + first);
     }
-    let mut bases = [T::default(); 16];
-    T::store::<S>(base, &mut bases);
-    for lane in 0..T::WIDTH {
-        stage.base[p + lane] = bases[lane].to_index() as u32;
-    }
+    T::store_whole::<S>(base, &mut stage.base[p..]);
     for axis in 0..D {
         T::store_quads::<S>(K::weights(frac[axis]), &mut stage.weights[axis][4 * p..]);
         if CLASSIC {
