@@ -304,6 +304,9 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                 })
                 .collect::<Result<_, _>>()?,
         };
+        for (index, rows) in state.groups.iter().enumerate() {
+            self.check_places(&format!("materials.{index}.runs.block"), rows)?;
+        }
         let mut ids: Vec<u32> = Vec::new();
         for rows in &state.groups {
             ids.extend(&rows.id);
@@ -326,6 +329,24 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             Some(more) => wrong(&more.name, "does not belong to this scene"),
             None => Ok((state, starts)),
         }
+    }
+
+    /// Whether rows are where walls hold them: the next substep would put them there, out of reach of their tile.
+    fn check_places(&self, name: &str, rows: &Rows<T, D>) -> Result<(), CheckpointError> {
+        let edge = block_edge(D) as f64;
+        for run in &rows.runs {
+            for axis in 0..D {
+                let (low, high) = self.walls.hold[axis];
+                let middle = self.scheme.offset() + edge * (f64::from(run.block[axis]) + 0.5);
+                let low = low.map_or(f64::NEG_INFINITY, |low| low - middle - ROUNDING);
+                let high = high.map_or(f64::INFINITY, |high| high - middle + ROUNDING);
+                let places = &rows.columns[axis][run.rows()];
+                if !places.iter().all(|x| (low..=high).contains(&x.to_f64())) {
+                    return wrong(name, "has rows outside of the walls");
+                }
+            }
+        }
+        Ok(())
     }
 
     fn read_taken(&self, arrays: &mut In) -> Result<Vec<Taken<D>>, CheckpointError> {

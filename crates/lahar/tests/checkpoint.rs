@@ -362,8 +362,26 @@ fn values_out_of_place_are_refused() {
     );
 }
 
-/// Found by changing arrays at random: rows further from their block than they can have moved were read
-/// beyond their tile.
+/// Found by changing arrays at random: a block far outside of the walls, whose rows the first substep put back
+/// inside, beyond their tile.
+#[test]
+fn rows_outside_of_the_walls_are_refused() {
+    let mut simulation = fresh::<f32, 2>(&brawl::<2>(32));
+    let mut bad = simulation.checkpoint();
+    let name = "materials.1.runs.block";
+    let blocks = bad.arrays.iter_mut().find(|array| array.name == name);
+    match &mut blocks.expect("it is there").values {
+        Values::I32(blocks) => blocks[0] = -129,
+        other => panic!("{other:?}"),
+    }
+    let error = simulation.resume(bad).expect_err("nothing is out there");
+    assert!(
+        error.array == name && error.what.contains("walls"),
+        "{error}"
+    );
+}
+
+/// A drift that is too small would let rows leave their tile before they are sorted.
 #[test]
 fn rows_beyond_their_drift_are_refused() {
     let scene = brawl::<2>(32);
