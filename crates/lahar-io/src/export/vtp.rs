@@ -35,27 +35,17 @@ pub(super) fn write<W: Write>(mut writer: W, snapshot: &Snapshot) -> io::Result<
             columns.push(column);
         }
     }
-    write!(
-        writer,
-        r#"<?xml version="1.0"?>
-<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
-<PolyData>
-<FieldData>
-<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{time:?}</DataArray>
-</FieldData>
-<Piece NumberOfPoints="{n}" NumberOfVerts="{n}" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">
+    let piece = format!(
+        r#"<Piece NumberOfPoints="{n}" NumberOfVerts="{n}" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">
 <PointData>
 {data}</PointData>
 <Points>
 {points}</Points>
 <Verts>
 {vertices}</Verts>
-</Piece>
-</PolyData>
-<AppendedData encoding="raw">
-_"#,
-        time = snapshot.time,
-    )?;
+"#
+    );
+    begin(&mut writer, snapshot.time, &piece)?;
     // In the order in which their places were given.
     let mut columns = columns.into_iter();
     let block = |writer: &mut W, column: Column<'_>| {
@@ -93,24 +83,15 @@ pub(super) fn write_triangles(
     arrays.count = triangles as u64;
     let polygons = arrays.tag("Int64", "connectivity", 1, 3 * WHOLE_NUMBER)
         + &arrays.tag("Int64", "offsets", 1, WHOLE_NUMBER);
-    write!(
-        writer,
-        r#"<?xml version="1.0"?>
-<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
-<PolyData>
-<FieldData>
-<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{time:?}</DataArray>
-</FieldData>
-<Piece NumberOfPoints="{vertices}" NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="{triangles}">
+    let piece = format!(
+        r#"<Piece NumberOfPoints="{vertices}" NumberOfVerts="0" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="{triangles}">
 <Points>
 {points}</Points>
 <Polys>
 {polygons}</Polys>
-</Piece>
-</PolyData>
-<AppendedData encoding="raw">
-_"#
-    )?;
+"#
+    );
+    begin(writer, time, &piece)?;
     writer.write_all(&(vertices as u64 * 3 * SINGLE).to_le_bytes())?;
     for x in mesh.vertices.iter().flatten() {
         writer.write_all(&(*x as f32).to_le_bytes())?;
@@ -124,6 +105,23 @@ _"#
         writer.write_all(&(3 * triangle).to_le_bytes())?;
     }
     writer.write_all(END)
+}
+
+/// What comes before the numbers; `piece` names the arrays.
+fn begin(writer: &mut impl Write, time: f64, piece: &str) -> io::Result<()> {
+    write!(
+        writer,
+        r#"<?xml version="1.0"?>
+<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+<PolyData>
+<FieldData>
+<DataArray type="Float64" Name="TimeValue" NumberOfTuples="1" format="ascii">{time:?}</DataArray>
+</FieldData>
+{piece}</Piece>
+</PolyData>
+<AppendedData encoding="raw">
+_"#
+    )
 }
 
 const END: &[u8] = b"\n</AppendedData>\n</VTKFile>\n";
