@@ -30,10 +30,12 @@ use crate::forces::{self, Force};
 use crate::material::IsaToken;
 use crate::math::{Lanes, Vector};
 use crate::parallel;
+use crate::prefetch::prefetch;
 use crate::setup::Transfer;
 use crate::store::{Group, block_edge};
 use crate::transfer::Scheme;
 use columns::Columns;
+use core::ops::Range;
 use fearless_simd::Simd;
 pub(crate) use filling::OUTSIDE;
 use tile::{Piece, axis_pieces};
@@ -57,6 +59,24 @@ struct Link<const D: usize> {
     shift: [i16; D],
     low: [u8; D],
     high: [u8; D],
+}
+
+impl<const D: usize> Link<D> {
+    /// Its nodes within `reach`: `low ≤ node < high` in the block, if there are any.
+    #[inline(always)]
+    fn within(&self, reach: Reach<D>) -> Option<([usize; D], [usize; D])> {
+        let (mut low, mut high) = ([0; D], [0; D]);
+        for axis in 0..D {
+            let in_block =
+                |node: u8| (isize::from(node) - self.shift[axis] as isize).max(0) as usize;
+            low[axis] = usize::from(self.low[axis]).max(in_block(reach.low[axis]));
+            high[axis] = usize::from(self.high[axis]).min(in_block(reach.high[axis]));
+            if low[axis] >= high[axis] {
+                return None;
+            }
+        }
+        Some((low, high))
+    }
 }
 
 /// Forces on nodes that are not stress: gravity, drag and the hand. (Accelerations that differ from
@@ -414,6 +434,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             let _flush = crate::float_mode::FlushToZero::enter();
             on_level!(isa.0, simd => {
                 for (index, block) in piece.chunks_exact_mut(block_len).enumerate() {
+                    this.ask_for_tiles(first + index + 1);
                     this.gather_tiles(simd, first + index, block);
                     then(this, first + index, block);
                 }
@@ -444,33 +465,77 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
     /// `reach`.
     #[inline(always)]
     fn rows(&self, link: &Link<D>, reach: Reach<D>, mut row: impl FnMut(usize, usize, usize)) {
-        let edge = block_edge(D);
-        let last = D - 1;
-        let at = |axis: usize, node: usize| (node as isize + link.shift[axis] as isize) as usize;
-        let (mut low, mut high) = ([0; D], [0; D]);
-        for axis in 0..D {
-            let in_block =
-                |node: u8| (isize::from(node) - link.shift[axis] as isize).max(0) as usize;
-            low[axis] = usize::from(link.low[axis]).max(in_block(reach.low[axis]));
-            high[axis] = usize::from(link.high[axis]).min(in_block(reach.high[axis]));
-            if low[axis] >= high[axis] {
-                return;
-            }
-        }
-        let len = (high[last] - low[last]) * QUAD;
+        let Some((low, high)) = link.within(reach) else {
+            return;
+        };
+        let len = (high[D - 1] - low[D - 1]) * QUAD;
         for i in low[0]..high[0] {
             if D == 2 {
-                let block_row = i * edge + low[1];
-                let tile_row = at(0, i) * self.tile_edge + at(1, low[1]);
-                row(block_row * QUAD, tile_row * QUAD, len);
+                let (in_block, in_tile) = self.places(link, [i, low[1], 0]);
+                row(in_block, in_tile, len);
             } else {
                 for j in low[1]..high[1] {
-                    let block_row = (i * edge + j) * edge + low[last];
-                    let tile_row = (at(0, i) * self.tile_edge + at(1, j)) * self.tile_edge
-                        + at(last, low[last]);
-                    row(block_row * QUAD, tile_row * QUAD, len);
+                    let (in_block, in_tile) = self.places(link, [i, j, low[D - 1]]);
+                    row(in_block, in_tile, len);
                 }
             }
+        }
+    }
+
+    /// Where the quad of a node of `link` is in its block and in its tile; in 2D the third index is not used.
+    #[inline(always)]
+    fn places(&self, link: &Link<D>, node: [usize; 3]) -> (usize, usize) {
+        let (mut in_block, mut in_tile) = (0, 0);
+        for axis in 0..D {
+            let of_tile = (node[axis] as isize + link.shift[axis] as isize) as usize;
+            in_block = in_block * block_edge(D) + node[axis];
+            in_tile = in_tile * self.tile_edge + of_tile;
+        }
+        (in_block * QUAD, in_tile * QUAD)
+    }
+
+    /// Calls `span(places in the block, places in the tile)` for the nodes of `link` within `reach`, of each
+    /// index on the first axis: from the first to the last, with others between.
+    #[inline(always)]
+    fn spans(
+        &self,
+        link: &Link<D>,
+        reach: Reach<D>,
+        mut span: impl FnMut(Range<usize>, Range<usize>),
+    ) {
+        let Some((low, high)) = link.within(reach) else {
+            return;
+        };
+        for i in low[0]..high[0] {
+            let first = self.places(link, [i, low[1], low[D - 1]]);
+            let last = self.places(link, [i, high[1] - 1, high[D - 1] - 1]);
+            span(first.0..last.0 + QUAD, first.1..last.1 + QUAD);
+        }
+    }
+
+    /// Asks memory for what [`Self::gather_tiles`] will read for `block`, if there is that block.
+    #[inline(always)]
+    fn ask_for_tiles(&self, block: usize) {
+        let Some(&[start, end]) = self.links_of_block.get(block..block + 2) else {
+            return;
+        };
+        for link in &self.links[start as usize..end as usize] {
+            let tile = link.tile as usize * self.tile_len();
+            self.spans(link, self.reach[link.tile as usize], |_, span| {
+                prefetch(&[&self.tiles[..]], tile + span.start, span.len());
+            });
+        }
+    }
+
+    /// Asks memory for what [`Self::load_tile`] will read for `tile`.
+    pub(crate) fn ask_for_nodes(&self, tile: usize, reach: Reach<D>) {
+        let range = self.links_of_tile[tile] as usize..self.links_of_tile[tile + 1] as usize;
+        for &link in &self.links_by_tile[range] {
+            let link = &self.links[link as usize];
+            let block = link.block as usize * self.block_len();
+            self.spans(link, reach, |span, _| {
+                prefetch(&[&self.nodes[..]], block + span.start, span.len());
+            });
         }
     }
 

@@ -2,6 +2,7 @@
 
 pub mod boundary;
 pub mod checkpoint;
+mod chunk;
 pub mod diagnostics;
 mod dispatch;
 pub mod error;

@@ -8,7 +8,7 @@
 /// Bytes that memory is asked for at a time.
 const LINE: usize = 64;
 
-/// Asks for rows `start .. start + count` of each column, as far as they are there. Changes nothing.
+/// Asks for rows `start .. start + count` of each column that has them. Changes nothing.
 #[inline(always)]
 pub(crate) fn prefetch<T>(
     columns: &[impl core::ops::Deref<Target = [T]>],
@@ -17,15 +17,13 @@ pub(crate) fn prefetch<T>(
 ) {
     #[cfg(target_arch = "x86_64")]
     for column in columns {
-        for row in (start..start + count).step_by(LINE / size_of::<T>()) {
-            let Some(number) = column.get(row) else {
-                break;
-            };
+        let rows = column.get(start..start + count).unwrap_or_default();
+        for line in rows.chunks(LINE / size_of::<T>()) {
             // SAFETY: the address is that of a number in the slice; the instruction reads nothing that
             // the program could see, and is part of every x86-64 processor.
             unsafe {
                 core::arch::x86_64::_mm_prefetch::<{ core::arch::x86_64::_MM_HINT_T0 }>(
-                    core::ptr::from_ref(number).cast(),
+                    line.as_ptr().cast(),
                 );
             }
         }

@@ -13,6 +13,7 @@
 //! World positions exist at the public interface only. In f32 they could not tell neighbours apart
 //! far from the origin, nor move what is slow near it.
 
+use crate::chunk::{CHUNK, Rows, pad};
 use crate::material::Law;
 use crate::math::Lanes;
 
@@ -37,6 +38,25 @@ impl<T: Copy + PartialEq> PerParticle<T> {
             Self::Uniform(value) => *value,
             Self::Each(values) => values[index],
         }
+    }
+
+    /// The numbers of rows `start .. start + count`, at least one; in `room` if they do not lie there as they
+    /// are asked for.
+    #[inline(always)]
+    pub(crate) fn rows<'a>(
+        &'a self,
+        start: usize,
+        count: usize,
+        room: &'a mut Rows<T>,
+    ) -> &'a Rows<T> {
+        match self {
+            Self::Uniform(value) => room.fill(*value),
+            Self::Each(values) if count == CHUNK => {
+                return values[start..].first_chunk().expect("a full chunk");
+            }
+            Self::Each(values) => pad(room, &values[start..start + count]),
+        }
+        room
     }
 
     /// The numbers, if there is one a particle; else none.
@@ -184,7 +204,7 @@ pub(crate) fn locate(cells: f64, offset: f64, dimension: usize) -> (i32, f64) {
 
 /// The most columns a group has: position, velocity, affine, and a plastic strain in 3D, with room to
 /// spare.
-const MOST_COLUMNS: usize = 32;
+pub(crate) const MOST_COLUMNS: usize = 32;
 
 /// The rows of columns; empty ones behind them.
 pub(crate) fn slices<T>(columns: &[Vec<T>]) -> [&[T]; MOST_COLUMNS] {

@@ -6,12 +6,11 @@
 //! crate run as fast as ours.
 
 use super::{ConstitutiveModel, Model, Strain, VolumeCorrection, VolumeRule, for_model};
+use crate::chunk::Rows;
 use crate::dispatch::on_level;
 use crate::math::{Lanes, Matrix, Real, Vector};
+use core::ops::Deref;
 use fearless_simd::{Level, Simd};
-
-/// Particles worked on between two looks at the tile.
-pub(crate) const CHUNK: usize = 32;
 
 /// The strain and velocity gradient of one particle, and what its law makes of it, in f64.
 #[derive(Clone, Debug)]
@@ -40,17 +39,17 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
     fn gathered_column(&self) -> Option<usize>;
     /// The column of J − 1 and how fast it is set right, for a model that wants that.
     fn corrected_column(&self) -> Option<(usize, VolumeCorrection)>;
-    /// Writes J − 1 of particles `start .. start + count` (at most a chunk), plastic flow included.
+    /// Writes J − 1 of particles `start .. start + count`, plastic flow included. Here as below, at most a
+    /// chunk; columns have a whole one.
     fn jacobian_minus_one(
         &self,
         isa: IsaToken,
         strain: &[&[T]],
         start: usize,
         count: usize,
-        out: &mut [T],
+        out: &mut Rows<T>,
     );
-    /// Writes Kirchhoff stress of particles `start .. start + count` (at most a chunk):
-    /// `out[(j·D + i)·CHUNK + p]` = τ_ij \[Pa\].
+    /// Writes Kirchhoff stress of particles `start .. start + count`: `out[j·D + i][p]` = τ_ij \[Pa\].
     fn kirchhoff_stress(
         &self,
         isa: IsaToken,
@@ -58,17 +57,17 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
         affine: &[&[T]],
         start: usize,
         count: usize,
-        out: &mut [T],
+        out: &mut [Rows<T>; 9],
     );
     /// Advances the strain of particles `start .. start + count` by Δt ∂v/∂x, laid out as
-    /// `increment[(j·D + i)·CHUNK + p]`, and returns the largest wave modulus \[Pa\]; not a number if any is.
+    /// `increment[j·D + i][p]`, and returns the largest wave modulus \[Pa\]; not a number if any is.
     fn advance(
         &self,
         isa: IsaToken,
         strain: &mut [&mut [T]],
         start: usize,
         count: usize,
-        increment: &[T],
+        increment: &[Rows<T>; 9],
     ) -> T;
     /// The largest wave modulus \[Pa\] of `count` particles.
     fn wave_modulus(&self, strain: &[Vec<T>], count: usize) -> f64;
@@ -148,29 +147,16 @@ impl<M> Compiled<M> {
     }
 }
 
-/// A register from `slice[..count]`, `count` at least 1: what is past the end repeats the last.
-#[inline(always)]
-pub(crate) fn load_part<S: Simd, T: Lanes>(simd: S, slice: &[T], count: usize) -> T::Of<S> {
-    if count >= T::WIDTH {
-        T::load(simd, slice)
-    } else {
-        let mut padded = [slice[count - 1]; 16];
-        padded[..count].copy_from_slice(&slice[..count]);
-        T::load(simd, &padded)
-    }
-}
-
-/// A vector of a register of particles from its columns.
+/// A vector of the register of particles from row `at` on, from its columns.
 #[inline(always)]
 pub(crate) fn load_vector<S: Simd, T: Lanes, const D: usize>(
     simd: S,
-    columns: &[&[T]],
+    columns: &[impl Deref<Target = [T]>],
     at: usize,
-    left: usize,
 ) -> Vector<T::Of<S>, D> {
-    let mut v = Vector([load_part(simd, &columns[0][at..], left); D]);
+    let mut v = Vector([T::load(simd, &columns[0][at..]); D]);
     for axis in 1..D {
-        v[axis] = load_part(simd, &columns[axis][at..], left);
+        v[axis] = T::load(simd, &columns[axis][at..]);
     }
     v
 }
@@ -179,27 +165,14 @@ pub(crate) fn load_vector<S: Simd, T: Lanes, const D: usize>(
 #[inline(always)]
 pub(crate) fn load_matrix<S: Simd, T: Lanes, const D: usize>(
     simd: S,
-    columns: &[&[T]],
+    columns: &[impl Deref<Target = [T]>],
     at: usize,
-    left: usize,
 ) -> Matrix<T::Of<S>, D> {
-    let mut m = Matrix([load_vector(simd, columns, at, left); D]);
+    let mut m = Matrix([load_vector(simd, columns, at); D]);
     for j in 1..D {
-        m.0[j] = load_vector(simd, &columns[j * D..], at, left);
+        m.0[j] = load_vector(simd, &columns[j * D..], at);
     }
     m
-}
-
-/// The first `count` lanes to `slice`.
-#[inline(always)]
-pub(crate) fn store_part<S: Simd, T: Lanes>(value: T::Of<S>, slice: &mut [T], count: usize) {
-    if count >= T::WIDTH {
-        T::store::<S>(value, slice);
-    } else {
-        let mut padded = [T::default(); 16];
-        T::store::<S>(value, &mut padded);
-        slice[..count].copy_from_slice(&padded[..count]);
-    }
 }
 
 impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for Compiled<M> {
@@ -225,7 +198,7 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for 
         strain: &[&[T]],
         start: usize,
         count: usize,
-        out: &mut [T],
+        out: &mut Rows<T>,
     ) {
         on_level!(isa.0, simd => jacobian_chunk::<_, T, D, M>(simd, strain, start, count, out));
     }
@@ -237,7 +210,7 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for 
         affine: &[&[T]],
         start: usize,
         count: usize,
-        out: &mut [T],
+        out: &mut [Rows<T>; 9],
     ) {
         let model = self.0;
         on_level!(isa.0, simd => stress_chunk::<_, T, D, M>(simd, &model, strain, affine, start, count, out));
@@ -249,7 +222,7 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for 
         strain: &mut [&mut [T]],
         start: usize,
         count: usize,
-        increment: &[T],
+        increment: &[Rows<T>; 9],
     ) -> T {
         let model = self.0;
         on_level!(isa.0, simd => advance_chunk::<_, T, D, M>(simd, &model, strain, start, count, increment))
@@ -321,17 +294,18 @@ fn stress_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     affine: &[&[T]],
     start: usize,
     count: usize,
-    out: &mut [T],
+    out: &mut [Rows<T>; 9],
 ) {
+    let strain = &strain[..<M::Strain<f64> as Strain<f64, D>>::COLUMNS];
+    let affine = &affine[..D * D];
     let mut p = 0;
     while p < count {
-        let left = count - p;
-        let lanes = M::Strain::read(|column| load_part(simd, &strain[column][start + p..], left));
-        let gradient = load_matrix(simd, affine, start + p, left);
+        let lanes = M::Strain::read(|column| T::load(simd, &strain[column][start + p..]));
+        let gradient = load_matrix(simd, affine, start + p);
         let tau = model.kirchhoff_stress(lanes, gradient);
         for j in 0..D {
             for i in 0..D {
-                T::store::<S>(tau[(i, j)], &mut out[(j * D + i) * CHUNK + p..]);
+                T::store::<S>(tau[(i, j)], &mut out[j * D + i][p..]);
             }
         }
         p += T::WIDTH;
@@ -344,13 +318,13 @@ fn jacobian_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     strain: &[&[T]],
     start: usize,
     count: usize,
-    out: &mut [T],
+    out: &mut Rows<T>,
 ) {
+    let strain = &strain[..<M::Strain<f64> as Strain<f64, D>>::COLUMNS];
     let mut p = 0;
     while p < count {
-        let left = count - p;
         let strain: M::Strain<T::Of<S>> =
-            M::Strain::read(|column| load_part(simd, &strain[column][start + p..], left));
+            M::Strain::read(|column| T::load(simd, &strain[column][start + p..]));
         let (elastic, plastic) = (
             strain.jacobian_minus_one(),
             strain.plastic_jacobian_minus_one(),
@@ -367,23 +341,21 @@ fn advance_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     strain: &mut [&mut [T]],
     start: usize,
     count: usize,
-    increment: &[T],
+    increment: &[Rows<T>; 9],
 ) -> T {
+    let strain = &mut strain[..<M::Strain<f64> as Strain<f64, D>>::COLUMNS];
     let mut largest = T::broadcast(simd, T::default());
     let mut p = 0;
     while p < count {
-        let left = count - p;
-        let before = M::Strain::read(|column| load_part(simd, &strain[column][start + p..], left));
-        let mut change = Matrix([Vector([T::load(simd, &increment[p..]); D]); D]);
+        let before = M::Strain::read(|column| T::load(simd, &strain[column][start + p..]));
+        let mut change = Matrix([Vector([T::load(simd, &increment[0][p..]); D]); D]);
         for j in 0..D {
             for i in 0..D {
-                change.0[j][i] = T::load(simd, &increment[(j * D + i) * CHUNK + p..]);
+                change.0[j][i] = T::load(simd, &increment[j * D + i][p..]);
             }
         }
         let after = model.advance(before, change); // (7)
-        after.write(|column, value| {
-            store_part::<S, T>(value, &mut strain[column][start + p..], left)
-        });
+        after.write(|column, value| T::store::<S>(value, &mut strain[column][start + p..]));
         // Written so that a number that is none stays: max would drop it.
         let modulus = model.wave_modulus(after);
         largest = Real::select(largest.ge(modulus), largest, modulus);

@@ -16,8 +16,8 @@ mod strain;
 
 pub use corotated::Corotated;
 pub use fluid::{Eos, Fluid, JacobianUpdate, SMALLEST_JACOBIAN, TORN, ViscousStress};
-pub(crate) use law::{CHUNK, built_in, load_matrix, load_part, load_vector, store_part};
 pub use law::{IsaToken, Law, ParticleState, law};
+pub(crate) use law::{built_in, load_matrix, load_vector};
 pub use neo_hookean::{LOGARITHM_ENDS, NeoHookean};
 pub use none::Dust;
 pub use presets::{PRESETS, preset};

@@ -7,9 +7,10 @@ use crate::boundary::impulse::Taken;
 use crate::boundary::pointer::Push;
 use crate::boundary::surface::put_out;
 use crate::boundary::walls::Walls;
+use crate::chunk::{CHUNK, Padded};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::BSpline;
-use crate::material::{CHUNK, IsaToken, load_part, store_part};
+use crate::material::{IsaToken, load_vector};
 use crate::math::{Lanes, Mask, Matrix, Real, Vector};
 use crate::parallel;
 use crate::prefetch::prefetch;
@@ -88,6 +89,7 @@ pub(crate) fn gather<T: Lanes, const D: usize>(
     } = group;
     let task = Task {
         law: law.as_ref(),
+        columns: columns.len(),
         grid,
         mass,
         around,
@@ -107,6 +109,8 @@ pub(crate) fn gather<T: Lanes, const D: usize>(
 
 struct Task<'a, T: Lanes, const D: usize> {
     law: &'a dyn crate::material::Law<T, D>,
+    /// How many columns there are.
+    columns: usize,
     grid: &'a Grid<T, D>,
     mass: &'a PerParticle<T>,
     around: Around<'a, D>,
@@ -127,7 +131,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
     ) -> Bounds {
         let Some((middle, row)) = split_runs(runs, grain) else {
             let _flush = crate::float_mode::FlushToZero::enter();
-            let mut stage = Stage::new();
+            let (mut stage, mut padded) = (Stage::new(), Padded::new());
             let mut tile = [T::default(); LARGEST_TILE];
             let mut columns = columns;
             let mut bounds = Bounds::NONE;
@@ -135,7 +139,13 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
                 let number = run.tile as usize;
                 let reach = self.grid.reach_of_rows(number);
                 self.grid.load_tile(self.isa, number, reach, &mut tile);
-                let mut found = self.block(run, first_row, &tile, &mut columns, &mut stage);
+                if let Some(next) = runs.get(index + 1) {
+                    let number = next.tile as usize;
+                    self.grid
+                        .ask_for_nodes(number, self.grid.reach_of_rows(number));
+                }
+                let mut found =
+                    self.block(run, first_row, &tile, &mut columns, &mut stage, &mut padded);
                 let of_run = &mut taken[index * self.around.colliders.len()..]
                     [..self.around.colliders.len()];
                 self.put_out(run, first_row, &mut columns, of_run, &mut found);
@@ -160,8 +170,10 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         tile: &[T],
         columns: &mut ColumnsMut<'_, T>,
         stage: &mut Stage<T>,
+        padded: &mut Padded<T>,
     ) -> Bounds {
         let plane = self.grid.tile_plane();
+        let columns = &mut columns.slices[..self.columns];
         let keep = Keep {
             hold: self.hold(run),
             push: self.push(run),
@@ -170,28 +182,28 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         let mut bounds = Bounds::NONE;
         for row in run.rows().step_by(CHUNK) {
             let start = row - first_row;
-            prefetch(&columns.slices, start + CHUNK, CHUNK);
+            prefetch(columns, start + CHUNK, CHUNK);
             let count = CHUNK.min(run.end as usize - row);
-            let mut found = with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
-                chunk::<_, T, D, K, SPLIT, CLASSIC>(simd, self, start, count, plane, tile, &keep, columns, stage)
+            let mut found = padded.with_mut(columns, start, count, |columns, at| {
+                let mut found = with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
+                    chunk::<_, T, D, K, SPLIT, CLASSIC>(simd, self, at, count, plane, tile, &keep, columns, stage)
+                });
+                let strain = &mut columns[Layout::strain(D)..];
+                let modulus = self.law.advance(self.isa, strain, at, count, &stage.matrix);
+                if modulus.to_f64().is_finite() {
+                    found.wave_modulus = modulus.to_f64();
+                } else if found.failed.is_none() {
+                    found.failed = Some(0);
+                    found.failures = 1;
+                }
+                found
             });
-            let strain = &mut columns.slices[Layout::strain(D)..];
-            let modulus = self
-                .law
-                .advance(self.isa, strain, start, count, &stage.matrix)
-                .to_f64();
-            if modulus.is_finite() {
-                found.wave_modulus = modulus;
-            } else if found.failed.is_none() {
-                found.failed = Some(start);
-                found.failures = 1;
-            }
             if !in_range(run.block) {
                 // One more move can still be told from where it is, two may not.
-                found.failed = Some(start);
+                found.failed = Some(0);
                 found.failures = count as u64;
             }
-            found.failed = found.failed.map(|local| local + first_row);
+            found.failed = found.failed.map(|p| row + p);
             bounds = bounds.and(found);
         }
         bounds
@@ -297,21 +309,6 @@ struct Keep<T, const D: usize> {
     cushion: Option<([(T, T); D], T)>,
 }
 
-/// A vector of a register of particles from its columns.
-#[inline(always)]
-fn load_vector<S: Simd, T: Lanes, const D: usize>(
-    simd: S,
-    columns: &[&mut [T]],
-    at: usize,
-    left: usize,
-) -> Vector<T::Of<S>, D> {
-    let mut v = Vector([load_part(simd, &columns[0][at..], left); D]);
-    for axis in 1..D {
-        v[axis] = load_part(simd, &columns[axis][at..], left);
-    }
-    v
-}
-
 /// A vector of a register of particles from their quads.
 #[inline(always)]
 fn load_quads<S: Simd, T: Lanes, const D: usize>(
@@ -327,7 +324,7 @@ fn load_quads<S: Simd, T: Lanes, const D: usize>(
     v
 }
 
-/// (5), (6), (8) for a chunk; leaves Δt ∂v/∂x in the stage for the law.
+/// (5), (6), (8) for particles `start .. start + count`; leaves Δt ∂v/∂x in the stage for the law.
 #[expect(
     clippy::too_many_arguments,
     reason = "the innermost function: what does not change comes apart from what does"
@@ -341,17 +338,17 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
     plane: usize,
     tile: &[T],
     keep: &Keep<T, D>,
-    columns: &mut ColumnsMut<'_, T>,
+    columns: &mut [&mut [T]],
     stage: &mut Stage<T>,
 ) -> Bounds {
+    let columns = &mut columns[..Layout::strain(D)];
     let mut p = 0;
     while p < count {
-        let left = count - p;
-        let u = load_vector::<S, T, D>(simd, &columns.slices[..D], start + p, left);
-        stencil::<S, T, D, K, CLASSIC>(u, p, stage);
+        stencil::<S, T, D, K, CLASSIC>(load_vector(simd, columns, start + p), p, stage);
         p += T::WIDTH;
     }
-    for p in 0..count {
+    // Lanes past the end repeat the last particle, so that maxima are those of particles.
+    for p in 0..p {
         rows::gather::<S, T, D, K, SPLIT, CLASSIC>(
             simd,
             stage,
@@ -361,12 +358,6 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
             tile,
         );
     }
-    // Lanes past the end repeat the last particle, so that maxima are those of particles.
-    for p in count..count.next_multiple_of(T::WIDTH) {
-        for quads in stage.momentum.iter_mut().chain(&mut stage.impulse) {
-            quads.copy_within(4 * (count - 1)..4 * count, 4 * p);
-        }
-    }
 
     let dx = task.scheme.dx;
     let cells_per_velocity = task.dt / dx;
@@ -375,9 +366,8 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
     let (mut failed, mut failures) = (None, 0);
     let mut p = 0;
     while p < count {
-        let (at, left) = (start + p, count - p);
-        let u = load_vector::<S, T, D>(simd, &columns.slices[..D], at, left);
-        let old_v = load_vector::<S, T, D>(simd, &columns.slices[Layout::velocity(D)..], at, left);
+        let u = load_vector::<S, T, D>(simd, columns, start + p);
+        let old_v = load_vector::<S, T, D>(simd, &columns[Layout::velocity(D)..], start + p);
         let v = load_quads::<S, T, D>(simd, &stage.momentum[0], p); // (5)
         let mut gradient = Matrix([v; D]);
         let mut c = gradient;
@@ -432,10 +422,10 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
         }
         let good = check.ge(zero) & largest.le(zero.lit(MOST_CELLS));
         if !good.all() {
-            for lane in 0..left.min(T::WIDTH) {
+            for lane in 0..T::WIDTH.min(count - p) {
                 let whole = check.lane(lane) >= T::default();
                 if !whole || largest.lane(lane) > T::from_f64(MOST_CELLS) {
-                    failed = failed.or(Some(start + p + lane));
+                    failed = failed.or(Some(p + lane));
                     failures += 1;
                 }
             }
@@ -445,22 +435,18 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
 
         for i in 0..D {
             let new_u = Real::select(good, new_u[i], u[i]);
-            store_part::<S, T>(new_u, &mut columns.slices[i][at..], left);
+            T::store::<S>(new_u, &mut columns[i][start + p..]);
             let new_v = Real::select(good, new_v[i], old_v[i]);
-            store_part::<S, T>(
-                new_v,
-                &mut columns.slices[Layout::velocity(D) + i][at..],
-                left,
-            );
+            T::store::<S>(new_v, &mut columns[Layout::velocity(D) + i][start + p..]);
         }
         for j in 0..D {
             for i in 0..D {
-                let column = Layout::affine(D) + j * D + i;
-                store_part::<S, T>(c[(i, j)], &mut columns.slices[column][at..], left);
+                let place = j * D + i;
                 T::store::<S>(
-                    increment[(i, j)],
-                    &mut stage.matrix[(j * D + i) * CHUNK + p..],
+                    c[(i, j)],
+                    &mut columns[Layout::affine(D) + place][start + p..],
                 );
+                T::store::<S>(increment[(i, j)], &mut stage.matrix[place][p..]);
             }
         }
         p += T::WIDTH;

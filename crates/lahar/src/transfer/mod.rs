@@ -17,9 +17,9 @@ pub(crate) mod rows;
 pub(crate) mod scatter;
 pub(crate) mod volume;
 
+use crate::chunk::{CHUNK, Rows};
 use crate::grid::{tile_edge, tile_plane};
 use crate::kernel::BSpline;
-use crate::material::CHUNK;
 use crate::math::Lanes;
 use crate::setup::{ForceForm, Kernel, Transfer};
 
@@ -76,8 +76,8 @@ impl Scheme {
 /// Buffers for one chunk of particles. A quad is four numbers of one particle; quads of a chunk
 /// follow one another.
 pub(crate) struct Stage<T> {
-    /// τ, or Δt ∂v/∂x: `[(j·D + i)·CHUNK + p]`.
-    pub(crate) matrix: [T; 9 * CHUNK],
+    /// τ, or Δt ∂v/∂x: `[j·D + i][p]`. Of volumes, J − 1 in the first.
+    pub(crate) matrix: [Rows<T>; 9],
     /// For each axis, the four weights of each particle.
     pub(crate) weights: [[T; 4 * CHUNK]; 3],
     /// For each axis, the four weight gradients of each particle (classic only).
@@ -99,7 +99,7 @@ impl<T: Lanes> Stage<T> {
     pub(crate) fn new() -> Self {
         let zero = T::default();
         Self {
-            matrix: [zero; 9 * CHUNK],
+            matrix: [[zero; CHUNK]; 9],
             weights: [[zero; 4 * CHUNK]; 3],
             gradients: [[zero; 4 * CHUNK]; 3],
             momentum: [[zero; 4 * CHUNK]; 4],

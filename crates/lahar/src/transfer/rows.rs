@@ -118,6 +118,39 @@ fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     }
 }
 
+/// Adds the first quad of `stage.momentum` for particle `p` to each node of its stencil, by weight: what has
+/// no affine part.
+#[inline(always)]
+pub(super) fn scatter_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
+    simd: S,
+    stage: &Stage<T>,
+    p: usize,
+    tile_edge: usize,
+    tile: &mut [T],
+) {
+    let q = 4 * p;
+    let base = stage.base[p] as usize;
+    let value = T::Row::<S>::spread(simd, &stage.weights[D - 1][q..])
+        * T::Row::<S>::repeat(simd, &stage.momentum[0][q..]);
+    for i in 0..K::NODES {
+        let w_i = T::Row::splat(simd, stage.weights[0][q + i]);
+        if D == 2 {
+            let row = &mut tile[(base + i * tile_edge) * 4..][..16];
+            w_i.mul_add(value, T::Row::load(simd, row)).store(row);
+            continue;
+        }
+        let value = w_i * value;
+        let at = (base + i * tile_edge * tile_edge) * 4;
+        let rows = &mut tile[at..at + (K::NODES - 1) * tile_edge * 4 + 16];
+        for j in 0..K::NODES {
+            let row = &mut rows[j * tile_edge * 4..][..16];
+            T::Row::splat(simd, stage.weights[1][q + j])
+                .mul_add(value, T::Row::load(simd, row))
+                .store(row);
+        }
+    }
+}
+
 /// The original force: what the gradients of the weights make of the impulse's columns G, which
 /// `impulse[1..]` holds: Σ over axes of G_a ∂_a w.
 #[inline(always)]
@@ -210,6 +243,31 @@ fn plane<T, const D: usize, K: BSpline>(
         (base + i * tile_edge * tile_edge, K::NODES - 1)
     };
     &tile[at * 4..][..rows * tile_edge * 4 + 16]
+}
+
+/// Σ w of the nodes' quads, to `momentum[0]`: what [`gather`] finds there.
+#[inline(always)]
+pub(super) fn gather_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
+    simd: S,
+    stage: &mut Stage<T>,
+    p: usize,
+    tile_edge: usize,
+    tile: &[T],
+) {
+    let q = 4 * p;
+    let base = stage.base[p] as usize;
+    let w_row = T::Row::<S>::spread(simd, &stage.weights[D - 1][q..]);
+    let mut sum = T::Row::splat(simd, T::default());
+    for i in 0..K::NODES {
+        let (row, _) = plane_sums::<S, T, D, K>(
+            simd,
+            plane::<T, D, K>(tile, base, i, tile_edge),
+            tile_edge,
+            &stage.weights[1][q..],
+        );
+        sum = sum + T::Row::splat(simd, stage.weights[0][q + i]) * row;
+    }
+    (sum * w_row).fold(&mut stage.momentum[0][q..]);
 }
 
 /// (5), (6) for particle `p`: Σ w v to `momentum[0]`, Σ w v (n_a − centre) to `momentum[1 + a]`; if `SPLIT`,

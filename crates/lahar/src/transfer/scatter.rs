@@ -1,14 +1,15 @@
 //! Particles to grid: (1)–(4).
 
 use super::{Scheme, Stage, rows, with_scheme};
+use crate::chunk::{CHUNK, Chunk, Padded, Rows};
 use crate::grid::{Reach, Tiles, tile_edge};
 use crate::kernel::BSpline;
-use crate::material::{CHUNK, IsaToken, load_part, load_vector};
+use crate::material::{IsaToken, load_matrix, load_vector};
 use crate::math::{Lanes, Matrix, Real, Vector};
 use crate::parallel;
 use crate::prefetch::prefetch;
 use crate::setup::Transfer;
-use crate::store::{Group, Layout, PerParticle, Run, block_edge, slices};
+use crate::store::{Group, Layout, Run, block_edge, slices};
 use fearless_simd::Simd;
 
 /// What is scattered.
@@ -36,8 +37,7 @@ pub(crate) fn scatter<T: Lanes, const D: usize>(
 ) {
     let task = Task {
         group,
-        columns: &slices(&group.columns),
-        constants: [group.mass.each_row(), group.volume0.each_row()],
+        columns: &slices(&group.columns)[..group.columns.len()],
         scheme,
         isa,
         dt,
@@ -50,8 +50,6 @@ pub(crate) fn scatter<T: Lanes, const D: usize>(
 struct Task<'a, T: Lanes, const D: usize> {
     group: &'a Group<T, D>,
     columns: &'a [&'a [T]],
-    /// Masses and rest volumes, if they differ.
-    constants: [&'a [T]; 2],
     scheme: Scheme,
     isa: IsaToken,
     dt: f64,
@@ -67,7 +65,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
     fn halve(&self, runs: &[Run<D>], first_tile: u32, mut tiles: Tiles<'_, T, D>, grain: usize) {
         let Some((middle, _)) = split_runs(runs, grain) else {
             let _flush = crate::float_mode::FlushToZero::enter();
-            let mut stage = Stage::new();
+            let mut buffers = Buffers::new();
             for run in runs {
                 let index = (run.tile - first_tile) as usize;
                 let tile = &mut tiles.numbers[index * tiles.len..][..tiles.len];
@@ -77,7 +75,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
                 } else {
                     tiles.reach[index]
                 };
-                tiles.reach[index] = before.and(self.block(run, tile, &mut stage));
+                tiles.reach[index] = before.and(self.block(run, tile, &mut buffers));
             }
             return;
         };
@@ -91,31 +89,78 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
     }
 
     /// Adds the particles of `run` to their tile; says how far they reach.
-    fn block(&self, run: &Run<D>, tile: &mut [T], stage: &mut Stage<T>) -> Reach<D> {
+    fn block(&self, run: &Run<D>, tile: &mut [T], buffers: &mut Buffers<T>) -> Reach<D> {
+        let Buffers {
+            stage,
+            padded,
+            mass: mass_room,
+            volume0: volume0_room,
+        } = buffers;
         stage.lowest = [[T::from_f64(f64::INFINITY); 16]; 3];
         stage.highest = [[T::from_f64(f64::NEG_INFINITY); 16]; 3];
-        let strain = &self.columns[Layout::strain(D)..];
-        let affine = &self.columns[Layout::affine(D)..Layout::strain(D)];
-        let plane = self.tile_plane();
         for start in run.rows().step_by(CHUNK) {
-            prefetch(self.columns, start + CHUNK, CHUNK);
-            prefetch(&self.constants, start + CHUNK, CHUNK);
+            self.ask_for(start + CHUNK);
             let count = CHUNK.min(run.end as usize - start);
-            let (law, out) = (&self.group.law, &mut stage.matrix);
-            match self.what {
-                What::Momentum => law.kirchhoff_stress(self.isa, strain, affine, start, count, out),
-                What::Volume { .. } => law.jacobian_minus_one(self.isa, strain, start, count, out),
-            }
-            with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
-                prepare::<_, T, D, K, SPLIT, CLASSIC>(simd, self, start, count, stage);
-                for p in 0..count {
-                    rows::scatter::<_, T, D, K, SPLIT, CLASSIC>(
-                        simd, stage, p, tile_edge::<D>(K::NODES), plane, tile,
-                    );
-                }
+            let (mass, volume0) = (&self.group.mass, &self.group.volume0);
+            let (mass, volume0) = (
+                mass.rows(start, count, mass_room),
+                volume0.rows(start, count, volume0_room),
+            );
+            padded.with(self.columns, start, count, |chunk| {
+                let particles = Particles {
+                    chunk,
+                    mass,
+                    volume0,
+                };
+                self.chunk(&particles, tile, stage);
             });
         }
         self.reach(stage)
+    }
+
+    fn chunk(&self, particles: &Particles<'_, T>, tile: &mut [T], stage: &mut Stage<T>) {
+        let Chunk {
+            columns,
+            start,
+            count,
+        } = particles.chunk;
+        let (law, strain) = (&self.group.law, &columns[Layout::strain(D)..]);
+        if let What::Volume { corrected } = self.what {
+            law.jacobian_minus_one(self.isa, strain, start, count, &mut stage.matrix[0]);
+            with_scheme!(self.scheme, self.isa, simd, K, _SPLIT, _CLASSIC => {
+                prepare_volumes::<_, T, D, K>(simd, particles, corrected, stage);
+                for p in 0..count {
+                    rows::scatter_quad::<_, T, D, K>(simd, stage, p, tile_edge::<D>(K::NODES), tile);
+                }
+            });
+            return;
+        }
+        let affine = &columns[Layout::affine(D)..];
+        law.kirchhoff_stress(self.isa, strain, affine, start, count, &mut stage.matrix);
+        let plane = self.tile_plane();
+        with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
+            prepare::<_, T, D, K, SPLIT, CLASSIC>(simd, self, particles, stage);
+            for p in 0..count {
+                rows::scatter::<_, T, D, K, SPLIT, CLASSIC>(
+                    simd, stage, p, tile_edge::<D>(K::NODES), plane, tile,
+                );
+            }
+        });
+    }
+
+    /// Asks memory for the chunk that begins with row `start`.
+    fn ask_for(&self, start: usize) {
+        match self.what {
+            What::Momentum => {
+                prefetch(self.columns, start, CHUNK);
+                prefetch(&[self.group.mass.each_row()], start, CHUNK);
+            }
+            What::Volume { .. } => {
+                prefetch(&self.columns[..D], start, CHUNK);
+                prefetch(&self.columns[Layout::strain(D)..], start, CHUNK);
+            }
+        }
+        prefetch(&[self.group.volume0.each_row()], start, CHUNK);
     }
 
     /// The nodes between the lowest and the highest places of a block's particles.
@@ -155,20 +200,6 @@ pub(super) fn split_runs<const D: usize>(runs: &[Run<D>], grain: usize) -> Optio
     Some((middle, runs[middle].start as usize))
 }
 
-/// Numbers of `count` particles from a value that may be the same for all.
-#[inline(always)]
-pub(super) fn load_each<S: Simd, T: Lanes>(
-    simd: S,
-    value: &PerParticle<T>,
-    start: usize,
-    count: usize,
-) -> T::Of<S> {
-    match value {
-        PerParticle::Uniform(value) => T::broadcast(simd, *value),
-        PerParticle::Each(values) => load_part(simd, &values[start..], count),
-    }
-}
-
 /// The stencil of a register of particles: weights to the stage; returns s, the place from the base
 /// node in cells.
 #[inline(always)]
@@ -205,6 +236,71 @@ fn quad<R: Real, const D: usize>(v: Vector<R, D>, fourth: R) -> [R; 4] {
     [v[0], v[1], if D == 3 { v[D - 1] } else { zero }, fourth]
 }
 
+/// What a chunk's particles bring to the grid.
+struct Particles<'a, T> {
+    chunk: Chunk<'a, T>,
+    mass: &'a Rows<T>,
+    volume0: &'a Rows<T>,
+}
+
+/// What a thread needs room for.
+struct Buffers<T> {
+    stage: Stage<T>,
+    padded: Padded<T>,
+    mass: Rows<T>,
+    volume0: Rows<T>,
+}
+
+impl<T: Lanes> Buffers<T> {
+    fn new() -> Self {
+        Self {
+            stage: Stage::new(),
+            padded: Padded::new(),
+            mass: [T::default(); CHUNK],
+            volume0: [T::default(); CHUNK],
+        }
+    }
+}
+
+/// Remembers how far a register of particles reaches.
+#[inline(always)]
+fn note_places<S: Simd, T: Lanes, const D: usize>(
+    simd: S,
+    u: Vector<T::Of<S>, D>,
+    stage: &mut Stage<T>,
+) {
+    for axis in 0..D {
+        let (lowest, highest) = (&mut stage.lowest[axis], &mut stage.highest[axis]);
+        T::store::<S>(T::load(simd, lowest).min(u[axis]), lowest);
+        T::store::<S>(T::load(simd, highest).max(u[axis]), highest);
+    }
+}
+
+/// Weights, and a quad of volumes each, for a chunk; J − 1 is in the stage.
+#[inline(always)]
+fn prepare_volumes<S: Simd, T: Lanes, const D: usize, K: BSpline>(
+    simd: S,
+    particles: &Particles<'_, T>,
+    corrected: bool,
+    stage: &mut Stage<T>,
+) {
+    let chunk = particles.chunk;
+    let mut p = 0;
+    while p < chunk.count {
+        let u = load_vector::<S, T, D>(simd, chunk.columns, chunk.start + p);
+        note_places::<S, T, D>(simd, u, stage);
+        stencil::<S, T, D, K, false>(u, p, stage);
+        let volume0 = T::load(simd, &particles.volume0[p..]);
+        let dilated = volume0 * T::load(simd, &stage.matrix[0][p..]);
+        let own = volume0.lit(if corrected { 1.0 } else { 0.0 });
+        T::store_quads::<S>(
+            [volume0, dilated, volume0 * own, dilated * own],
+            &mut stage.momentum[0][4 * p..],
+        );
+        p += T::WIDTH;
+    }
+}
+
 /// (3), (4) for a chunk: weights, and what each particle gives by rows.
 #[inline(always)]
 fn prepare<
@@ -217,53 +313,26 @@ fn prepare<
 >(
     simd: S,
     task: &Task<'_, T, D>,
-    start: usize,
-    count: usize,
+    particles: &Particles<'_, T>,
     stage: &mut Stage<T>,
 ) {
-    let group = task.group;
     let dx = task.scheme.dx;
     let apic = task.scheme.transfer == Transfer::Apic;
+    let columns = &particles.chunk.columns[..Layout::strain(D)];
     let mut p = 0;
-    while p < count {
-        let left = count - p;
-        let columns = task.columns;
-        let u = load_vector(simd, columns, start + p, left);
-        for axis in 0..D {
-            let (lowest, highest) = (&mut stage.lowest[axis], &mut stage.highest[axis]);
-            T::store::<S>(T::load(simd, lowest).min(u[axis]), lowest);
-            T::store::<S>(T::load(simd, highest).max(u[axis]), highest);
-        }
+    while p < particles.chunk.count {
+        let at = particles.chunk.start + p;
+        let u = load_vector(simd, columns, at);
+        note_places::<S, T, D>(simd, u, stage);
         let s = stencil::<S, T, D, K, CLASSIC>(u, p, stage);
-        let m = load_each(simd, &group.mass, start + p, left);
+        let m = T::load(simd, &particles.mass[p..]);
         let zero = m.zero();
-        let volume0 = load_each(simd, &group.volume0, start + p, left);
-        if let What::Volume { corrected } = task.what {
-            let dilated = volume0 * T::load(simd, &stage.matrix[p..]);
-            let own = if corrected { m.one() } else { zero };
-            T::store_quads::<S>(
-                [volume0, dilated, volume0 * own, dilated * own],
-                &mut stage.momentum[0][4 * p..],
-            );
-            for axis in 0..D {
-                T::store_quads::<S>([zero; 4], &mut stage.momentum[1 + axis][4 * p..]);
-            }
-            for part in &mut stage.impulse {
-                T::store_quads::<S>([zero; 4], &mut part[4 * p..]);
-            }
-            p += T::WIDTH;
-            continue;
-        }
-        let v = load_vector(simd, &columns[Layout::velocity(D)..], start + p, left);
+        let volume0 = T::load(simd, &particles.volume0[p..]);
+        let v = load_vector(simd, &columns[Layout::velocity(D)..], at);
         // dx Q, column by column: its motion part and its stress part.
         let mut affine = Matrix([Vector([zero; D]); D]);
         if apic {
-            let mass_dx = m * m.lit(dx);
-            for j in 0..D {
-                let column: Vector<_, D> =
-                    load_vector(simd, &columns[Layout::affine(D) + j * D..], start + p, left);
-                affine.0[j] = column * mass_dx;
-            }
+            affine = load_matrix(simd, &columns[Layout::affine(D)..], at) * (m * m.lit(dx));
         }
         // −Δt V⁰ D⁻¹ τ dx, or −Δt V⁰ τ / dx to be met by dx ∂w.
         let scale = if CLASSIC {
@@ -275,7 +344,7 @@ fn prepare<
         let mut stress = affine;
         for j in 0..D {
             for i in 0..D {
-                stress.0[j][i] = T::load(simd, &stage.matrix[(j * D + i) * CHUNK + p..]) * volume;
+                stress.0[j][i] = T::load(simd, &stage.matrix[j * D + i][p..]) * volume;
             }
         }
         if CLASSIC {

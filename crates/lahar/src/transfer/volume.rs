@@ -3,17 +3,18 @@
 //! The grid knows how much rest volume lies around a particle. Where a body is as dense as at rest that
 //! is dxᴰ a node; where there is less, what is there has expanded by as much.
 
+use super::rows::gather_quad;
 use super::scatter::{split_runs, stencil};
-use super::{LARGEST_TILE, Scheme, Stage, rows};
+use super::{LARGEST_TILE, Scheme, Stage};
+use crate::chunk::{CHUNK, Chunk, Padded, Rows, pad};
 use crate::dispatch::{on_level, on_portable};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
 use crate::material::rheology::shear_rate;
-use crate::material::{
-    CHUNK, IsaToken, VolumeCorrection, load_matrix, load_part, load_vector, store_part,
-};
+use crate::material::{IsaToken, VolumeCorrection, load_matrix, load_vector};
 use crate::math::{Lanes, Real};
 use crate::parallel;
+use crate::prefetch::prefetch;
 use crate::setup::Kernel;
 use crate::store::{Group, Layout, Run, slices};
 use fearless_simd::Simd;
@@ -29,7 +30,7 @@ pub(crate) fn expansion<T: Lanes, const D: usize>(
 ) {
     Task {
         group,
-        columns: &slices(&group.columns),
+        columns: &slices(&group.columns)[..Layout::strain(D)],
         grid,
         scheme,
         isa,
@@ -50,7 +51,7 @@ pub(crate) fn correct<T: Lanes, const D: usize>(
 ) {
     Task {
         group,
-        columns: &slices(&group.columns),
+        columns: &slices(&group.columns)[..Layout::strain(D)],
         grid,
         scheme,
         isa,
@@ -70,6 +71,7 @@ enum Read {
 
 struct Task<'a, T: Lanes, const D: usize> {
     group: &'a Group<T, D>,
+    /// Position, velocity, affine.
     columns: &'a [&'a [T]],
     grid: &'a Grid<T, D>,
     scheme: Scheme,
@@ -87,16 +89,27 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
     fn halve(&self, runs: &[Run<D>], first_row: usize, out: &mut [T], grain: usize) {
         let Some((middle, row)) = split_runs(runs, grain) else {
             let _flush = crate::float_mode::FlushToZero::enter();
-            let mut stage = Stage::new();
+            let (mut stage, mut padded) = (Stage::new(), Padded::new());
             let mut tile = [T::default(); LARGEST_TILE];
-            for run in runs {
-                let index = run.tile as usize;
-                let reach = self.grid.reach_of_rows(index);
-                self.grid.load_tile(self.isa, index, reach, &mut tile);
+            for (index, run) in runs.iter().enumerate() {
+                let number = run.tile as usize;
+                let reach = self.grid.reach_of_rows(number);
+                self.grid.load_tile(self.isa, number, reach, &mut tile);
+                if let Some(next) = runs.get(index + 1) {
+                    let number = next.tile as usize;
+                    self.grid
+                        .ask_for_nodes(number, self.grid.reach_of_rows(number));
+                }
                 for start in run.rows().step_by(CHUNK) {
+                    self.ask_for(start + CHUNK);
                     let count = CHUNK.min(run.end as usize - start);
                     let out = &mut out[start - first_row..][..count];
-                    self.chunk(start, &tile, &mut stage, out);
+                    let mut values = [T::default(); CHUNK];
+                    pad(&mut values, out);
+                    padded.with(self.columns, start, count, |chunk| {
+                        self.chunk(chunk, &tile, &mut stage, &mut values);
+                    });
+                    out.copy_from_slice(&values[..count]);
                 }
             }
             return;
@@ -109,41 +122,58 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         );
     }
 
-    fn chunk(&self, start: usize, tile: &[T], stage: &mut Stage<T>, out: &mut [T]) {
+    /// Asks memory for the chunk that begins with row `start`.
+    fn ask_for(&self, start: usize) {
+        prefetch(&self.columns[..D], start, CHUNK);
+        if let Read::Correction(_) = self.what {
+            prefetch(&self.columns[Layout::affine(D)..], start, CHUNK);
+        }
+    }
+
+    fn chunk(
+        &self,
+        particles: Chunk<'_, T>,
+        tile: &[T],
+        stage: &mut Stage<T>,
+        values: &mut Rows<T>,
+    ) {
         match self.scheme.kernel {
             Kernel::Quadratic => on_level!(self.isa.0, simd => {
-                chunk::<_, T, D, Quadratic>(simd, self, start, tile, stage, out);
+                chunk::<_, T, D, Quadratic>(simd, self, particles, tile, stage, values);
             }),
             Kernel::Cubic => on_portable!(simd => {
-                chunk::<_, T, D, Cubic>(simd, self, start, tile, stage, out);
+                chunk::<_, T, D, Cubic>(simd, self, particles, tile, stage, values);
             }),
             Kernel::Linear => on_portable!(simd => {
-                chunk::<_, T, D, Linear>(simd, self, start, tile, stage, out);
+                chunk::<_, T, D, Linear>(simd, self, particles, tile, stage, values);
             }),
         }
     }
 }
 
-/// (7g), or (7h) and (7i), for the particles from row `start` on, as many as `out` has room for.
+/// (7g), or (7h) and (7i), for a chunk.
 #[inline(always)]
 fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
     task: &Task<'_, T, D>,
-    start: usize,
+    particles: Chunk<'_, T>,
     tile: &[T],
     stage: &mut Stage<T>,
-    out: &mut [T],
+    values: &mut Rows<T>,
 ) {
-    let count = out.len();
+    let Chunk {
+        columns,
+        start,
+        count,
+    } = particles;
     let mut p = 0;
     while p < count {
-        let u = load_vector::<S, T, D>(simd, task.columns, start + p, count - p);
+        let u = load_vector::<S, T, D>(simd, columns, start + p);
         stencil::<S, T, D, K, false>(u, p, stage);
         p += T::WIDTH;
     }
-    let (edge, plane) = (tile_edge::<D>(K::NODES), task.grid.tile_plane());
     for p in 0..count {
-        rows::gather::<S, T, D, K, false, false>(simd, stage, p, edge, plane, tile);
+        gather_quad::<S, T, D, K>(simd, stage, p, tile_edge::<D>(K::NODES), tile);
     }
     let cell = T::broadcast(simd, T::from_f64(task.scheme.dx.powi(D as i32)));
     let mut p = 0;
@@ -153,9 +183,8 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline>(
         let value = match task.what {
             Read::Expansion => (cell - first) / first, // (7g)
             Read::Correction(shares) => {
-                let e = load_part(simd, &out[p..], count - p);
-                let affine = &task.columns[Layout::affine(D)..];
-                let c = load_matrix::<S, T, D>(simd, affine, start + p, count - p);
+                let e = T::load(simd, &values[p..]);
+                let c = load_matrix::<S, T, D>(simd, &columns[Layout::affine(D)..], start + p);
                 let strained = shear_rate(c);
                 let share = |rate: f64| {
                     let amount = strained * e.lit(rate);
@@ -165,7 +194,7 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline>(
                 smoothed - second * share(shares.correction) // (7i)
             }
         };
-        store_part::<S, T>(value, &mut out[p..], count - p);
+        T::store::<S>(value, &mut values[p..]);
         p += T::WIDTH;
     }
 }
