@@ -1,9 +1,14 @@
 //! A few particles at a time, read and written by whole registers.
 
+use crate::math::{Lanes, Real};
 use crate::store::MOST_COLUMNS;
+use fearless_simd::Simd;
 
 /// Particles worked on between two looks at the tile.
 pub(crate) const CHUNK: usize = 32;
+
+/// How many rows ahead memory is asked for: two chunks.
+pub(crate) const AHEAD: usize = 2 * CHUNK;
 
 /// A column's numbers of a chunk of particles.
 pub(crate) type Rows<T> = [T; CHUNK];
@@ -17,6 +22,7 @@ pub(crate) struct Chunk<'a, T> {
 }
 
 /// Room for the rows of chunks that are not full: they repeat the last particle.
+#[repr(align(64))]
 pub(crate) struct Padded<T>([Rows<T>; MOST_COLUMNS]);
 
 impl<T: Copy + Default> Padded<T> {
@@ -76,6 +82,39 @@ impl<T: Copy + Default> Padded<T> {
     }
 }
 
+/// The largest of many numbers that are not negative, lane by lane.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub struct Largest<T> {
+    lanes: [T; 16],
+    /// Zeros; not numbers where one was not finite, which a maximum would drop.
+    check: [T; 16],
+}
+
+impl<T: Lanes> Largest<T> {
+    pub(crate) fn none() -> Self {
+        Self {
+            lanes: [T::default(); 16],
+            check: [T::default(); 16],
+        }
+    }
+
+    /// Takes a register of numbers into account.
+    #[inline(always)]
+    pub(crate) fn take<S: Simd>(&mut self, simd: S, numbers: T::Of<S>) {
+        let largest = T::load(simd, &self.lanes).max(numbers);
+        T::store::<S>(largest, &mut self.lanes);
+        let check = T::load(simd, &self.check) + numbers * numbers.zero();
+        T::store::<S>(check, &mut self.check);
+    }
+
+    /// The largest so far; not a number if one was not finite.
+    pub(crate) fn get(&self) -> f64 {
+        let largest = self.lanes.iter().map(|x| x.to_f64()).fold(0.0, f64::max);
+        largest + self.check.iter().map(|x| x.to_f64()).sum::<f64>()
+    }
+}
+
 /// Writes `numbers`, at least one, and repeats the last.
 pub(crate) fn pad<T: Copy>(padded: &mut [T], numbers: &[T]) {
     padded[..numbers.len()].copy_from_slice(numbers);
@@ -84,7 +123,33 @@ pub(crate) fn pad<T: Copy>(padded: &mut [T], numbers: &[T]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{CHUNK, Padded};
+    use super::{CHUNK, Largest, Padded};
+    use crate::dispatch::on_portable;
+    use crate::math::Lanes;
+
+    #[test]
+    fn the_largest_is_not_lost_nor_what_is_no_number() {
+        let mut numbers = [1.0_f32; 16];
+        numbers[3] = 7.0;
+        let registers = |bad: f32| {
+            let mut second = [2.0; 16];
+            second[9] = bad;
+            [numbers, second, [3.0; 16]]
+        };
+        let largest = |bad: f32| {
+            let mut largest = Largest::<f32>::none();
+            on_portable!(simd => {
+                for register in registers(bad) {
+                    largest.take(simd, f32::load(simd, &register));
+                }
+            });
+            largest.get()
+        };
+        assert_eq!(largest(5.0), 7.0);
+        assert_eq!(largest(11.0), 11.0);
+        assert!(largest(f32::NAN).is_nan());
+        assert!(largest(f32::INFINITY).is_nan());
+    }
 
     #[test]
     fn rows_that_are_not_there_repeat_the_last() {

@@ -10,7 +10,7 @@ use crate::material::IsaToken;
 use crate::math::Lanes;
 use crate::parallel;
 use crate::store::block_edge;
-use crate::transfer::LARGEST_TILE;
+use crate::transfer::TileCopy;
 
 /// A node whose cell is less full than this is outside of the bodies. Far from both 0 and 1, so that
 /// the unevenness of particles, some percent, does not decide which nodes are asked.
@@ -40,13 +40,13 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         let this = &*self;
         parallel::for_chunks(&mut excess, BLOCK_NODES, 0, grain, &|first, piece| {
             let _flush = crate::float_mode::FlushToZero::enter();
-            let mut tile = [T::default(); LARGEST_TILE];
+            let mut tile = TileCopy::new();
             for (index, excess) in piece.chunks_exact_mut(BLOCK_NODES).enumerate() {
                 let block = first + index;
                 match this.tile_blocks.binary_search(&this.blocks[block]) {
                     Ok(number) => {
-                        this.load_tile(isa, number, Reach::WHOLE, &mut tile);
-                        this.excess(block, &tile, walls, cell, excess);
+                        this.load_tile(isa, number, Reach::WHOLE, &mut tile.0);
+                        this.excess(block, &tile.0, walls, cell, excess);
                     }
                     Err(_) => this.excess_without_tile(block, walls, cell, excess),
                 }

@@ -6,9 +6,9 @@
 //! crate run as fast as ours.
 
 use super::{ConstitutiveModel, Model, Strain, VolumeCorrection, VolumeRule, for_model};
-use crate::chunk::Rows;
+use crate::chunk::{Largest, Rows};
 use crate::dispatch::on_level;
-use crate::math::{Lanes, Matrix, Real, Vector};
+use crate::math::{Lanes, Matrix, Vector};
 use core::ops::Deref;
 use fearless_simd::{Level, Simd};
 
@@ -60,7 +60,7 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
         out: &mut [Rows<T>; 9],
     );
     /// Advances the strain of particles `start .. start + count` by Δt ∂v/∂x, laid out as
-    /// `increment[j·D + i][p]`, and returns the largest wave modulus \[Pa\]; not a number if any is.
+    /// `increment[j·D + i][p]`, and takes their wave moduli \[Pa\] into account.
     fn advance(
         &self,
         isa: IsaToken,
@@ -68,7 +68,8 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
         start: usize,
         count: usize,
         increment: &[Rows<T>; 9],
-    ) -> T;
+        wave_modulus: &mut Largest<T>,
+    );
     /// The largest wave modulus \[Pa\] of `count` particles.
     fn wave_modulus(&self, strain: &[Vec<T>], count: usize) -> f64;
     /// Viscosity for the time step \[Pa s\].
@@ -223,9 +224,12 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for 
         start: usize,
         count: usize,
         increment: &[Rows<T>; 9],
-    ) -> T {
+        wave_modulus: &mut Largest<T>,
+    ) {
         let model = self.0;
-        on_level!(isa.0, simd => advance_chunk::<_, T, D, M>(simd, &model, strain, start, count, increment))
+        on_level!(isa.0, simd => {
+            advance_chunk::<_, T, D, M>(simd, &model, strain, start, count, increment, wave_modulus);
+        });
     }
 
     fn wave_modulus(&self, strain: &[Vec<T>], count: usize) -> f64 {
@@ -342,9 +346,9 @@ fn advance_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     start: usize,
     count: usize,
     increment: &[Rows<T>; 9],
-) -> T {
+    wave_modulus: &mut Largest<T>,
+) {
     let strain = &mut strain[..<M::Strain<f64> as Strain<f64, D>>::COLUMNS];
-    let mut largest = T::broadcast(simd, T::default());
     let mut p = 0;
     while p < count {
         let before = M::Strain::read(|column| T::load(simd, &strain[column][start + p..]));
@@ -356,18 +360,7 @@ fn advance_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
         }
         let after = model.advance(before, change); // (7)
         after.write(|column, value| T::store::<S>(value, &mut strain[column][start + p..]));
-        // Written so that a number that is none stays: max would drop it.
-        let modulus = model.wave_modulus(after);
-        largest = Real::select(largest.ge(modulus), largest, modulus);
+        wave_modulus.take(simd, model.wave_modulus(after));
         p += T::WIDTH;
     }
-    let mut result = largest.lane(0);
-    for lane in 1..T::WIDTH {
-        let x = largest.lane(lane);
-        // Not a number wins.
-        if x > result || x.to_f64().is_nan() {
-            result = x;
-        }
-    }
-    result
 }

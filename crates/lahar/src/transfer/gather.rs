@@ -1,13 +1,13 @@
 //! Grid to particles: (5)–(8).
 
 use super::scatter::{split_runs, stencil};
-use super::{LARGEST_TILE, Scheme, Stage, rows, with_scheme};
+use super::{Scheme, Stage, TileCopy, rows, with_scheme};
 use crate::boundary::collider::Moving;
 use crate::boundary::impulse::Taken;
 use crate::boundary::pointer::Push;
 use crate::boundary::surface::put_out;
 use crate::boundary::walls::Walls;
-use crate::chunk::{CHUNK, Padded};
+use crate::chunk::{AHEAD, CHUNK, Largest, Padded};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_vector};
@@ -132,20 +132,26 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         let Some((middle, row)) = split_runs(runs, grain) else {
             let _flush = crate::float_mode::FlushToZero::enter();
             let (mut stage, mut padded) = (Stage::new(), Padded::new());
-            let mut tile = [T::default(); LARGEST_TILE];
+            let mut tile = TileCopy::new();
             let mut columns = columns;
             let mut bounds = Bounds::NONE;
             for (index, run) in runs.iter().enumerate() {
                 let number = run.tile as usize;
                 let reach = self.grid.reach_of_rows(number);
-                self.grid.load_tile(self.isa, number, reach, &mut tile);
+                self.grid.load_tile(self.isa, number, reach, &mut tile.0);
                 if let Some(next) = runs.get(index + 1) {
                     let number = next.tile as usize;
                     self.grid
                         .ask_for_nodes(number, self.grid.reach_of_rows(number));
                 }
-                let mut found =
-                    self.block(run, first_row, &tile, &mut columns, &mut stage, &mut padded);
+                let mut found = self.block(
+                    run,
+                    first_row,
+                    &tile.0,
+                    &mut columns,
+                    &mut stage,
+                    &mut padded,
+                );
                 let of_run = &mut taken[index * self.around.colliders.len()..]
                     [..self.around.colliders.len()];
                 self.put_out(run, first_row, &mut columns, of_run, &mut found);
@@ -179,34 +185,45 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
             push: self.push(run),
             cushion: self.cushion(run),
         };
-        let mut bounds = Bounds::NONE;
+        let mut most = Most::none();
+        let (mut failed, mut failures) = (None, 0);
         for row in run.rows().step_by(CHUNK) {
             let start = row - first_row;
-            prefetch(columns, start + CHUNK, CHUNK);
+            prefetch(columns, start + AHEAD, CHUNK);
             let count = CHUNK.min(run.end as usize - row);
-            let mut found = padded.with_mut(columns, start, count, |columns, at| {
-                let mut found = with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
-                    chunk::<_, T, D, K, SPLIT, CLASSIC>(simd, self, at, count, plane, tile, &keep, columns, stage)
+            let found = padded.with_mut(columns, start, count, |columns, at| {
+                let found = with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
+                    chunk::<_, T, D, K, SPLIT, CLASSIC>(
+                        simd, self, at, count, plane, tile, &keep, columns, stage, &mut most,
+                    )
                 });
                 let strain = &mut columns[Layout::strain(D)..];
-                let modulus = self.law.advance(self.isa, strain, at, count, &stage.matrix);
-                if modulus.to_f64().is_finite() {
-                    found.wave_modulus = modulus.to_f64();
-                } else if found.failed.is_none() {
-                    found.failed = Some(0);
-                    found.failures = 1;
-                }
+                let modulus = &mut most.wave_modulus;
+                self.law
+                    .advance(self.isa, strain, at, count, &stage.matrix, modulus);
                 found
             });
-            if !in_range(run.block) {
-                // One more move can still be told from where it is, two may not.
-                found.failed = Some(0);
-                found.failures = count as u64;
-            }
-            found.failed = found.failed.map(|p| row + p);
-            bounds = bounds.and(found);
+            failed = failed.or(found.0.map(|p| row + p));
+            failures += found.1;
         }
-        bounds
+        let mut wave_modulus = most.wave_modulus.get();
+        if !wave_modulus.is_finite() {
+            wave_modulus = 0.0;
+            failed = failed.or(Some(run.start as usize));
+            failures = failures.max(1);
+        }
+        if !in_range(run.block) {
+            // One more move can still be told from where it is, two may not.
+            failed = Some(run.start as usize);
+            failures = run.rows().len() as u64;
+        }
+        Bounds {
+            speed_squared: most.speed_squared.get(),
+            moved: most.moved.get(),
+            wave_modulus,
+            failed,
+            failures,
+        }
     }
 
     /// The hand as this block's particles see it.
@@ -299,6 +316,23 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
     }
 }
 
+/// The largest numbers among a block's particles, as in [`Bounds`].
+struct Most<T> {
+    speed_squared: Largest<T>,
+    moved: Largest<T>,
+    wave_modulus: Largest<T>,
+}
+
+impl<T: Lanes> Most<T> {
+    fn none() -> Self {
+        Self {
+            speed_squared: Largest::none(),
+            moved: Largest::none(),
+            wave_modulus: Largest::none(),
+        }
+    }
+}
+
 /// What pushes a block's particles and keeps them in; positions as stored, (lowest, highest) on each axis.
 struct Keep<T, const D: usize> {
     /// Where they may be: `None` if no wall is near.
@@ -324,7 +358,8 @@ fn load_quads<S: Simd, T: Lanes, const D: usize>(
     v
 }
 
-/// (5), (6), (8) for particles `start .. start + count`; leaves Δt ∂v/∂x in the stage for the law.
+/// (5), (6), (8) for particles `start .. start + count`; leaves Δt ∂v/∂x in the stage for the law. Returns the
+/// first of them that failed, and how many did.
 #[expect(
     clippy::too_many_arguments,
     reason = "the innermost function: what does not change comes apart from what does"
@@ -340,7 +375,8 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
     keep: &Keep<T, D>,
     columns: &mut [&mut [T]],
     stage: &mut Stage<T>,
-) -> Bounds {
+    most: &mut Most<T>,
+) -> (Option<usize>, u64) {
     let columns = &mut columns[..Layout::strain(D)];
     let mut p = 0;
     while p < count {
@@ -362,7 +398,6 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
     let dx = task.scheme.dx;
     let cells_per_velocity = task.dt / dx;
     let zero = T::broadcast(simd, T::default());
-    let (mut speed_squared, mut moved) = (zero, zero);
     let (mut failed, mut failures) = (None, 0);
     let mut p = 0;
     while p < count {
@@ -430,8 +465,9 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
                 }
             }
         }
-        moved = moved.max(Real::select(good, largest, zero));
-        speed_squared = speed_squared.max(Real::select(good, new_v.dot(new_v), zero));
+        most.moved.take(simd, Real::select(good, largest, zero));
+        most.speed_squared
+            .take(simd, Real::select(good, new_v.dot(new_v), zero));
 
         for i in 0..D {
             let new_u = Real::select(good, new_u[i], u[i]);
@@ -452,14 +488,5 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
         p += T::WIDTH;
     }
 
-    let largest = |lanes: T::Of<S>| {
-        (0..T::WIDTH).fold(0.0_f64, |most, lane| most.max(lanes.lane(lane).to_f64()))
-    };
-    Bounds {
-        speed_squared: largest(speed_squared),
-        moved: largest(moved),
-        wave_modulus: 0.0,
-        failed,
-        failures,
-    }
+    (failed, failures)
 }

@@ -24,7 +24,7 @@ use crate::math::Lanes;
 use crate::setup::{ForceForm, Kernel, Transfer};
 
 /// Numbers of the largest tile: cubic in 3D, two planes.
-pub(crate) const LARGEST_TILE: usize = 2 * tile_plane::<3>(tile_edge::<3>(4));
+const LARGEST_TILE: usize = 2 * tile_plane::<3>(tile_edge::<3>(4));
 
 /// What the loops need to know of scheme, kernel and step; all lengths in cells.
 #[derive(Clone, Copy, Debug)]
@@ -73,8 +73,19 @@ impl Scheme {
     }
 }
 
+/// A copy of a tile's nodes, as far as they are read; it begins with a line of the cache.
+#[repr(align(64))]
+pub(crate) struct TileCopy<T>(pub(crate) [T; LARGEST_TILE]);
+
+impl<T: Lanes> TileCopy<T> {
+    pub(crate) fn new() -> Self {
+        Self([T::default(); LARGEST_TILE])
+    }
+}
+
 /// Buffers for one chunk of particles. A quad is four numbers of one particle; quads of a chunk
 /// follow one another.
+#[repr(align(64))]
 pub(crate) struct Stage<T> {
     /// τ, or Δt ∂v/∂x: `[j·D + i][p]`. Of volumes, J − 1 in the first.
     pub(crate) matrix: [Rows<T>; 9],

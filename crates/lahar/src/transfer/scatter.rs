@@ -1,7 +1,7 @@
 //! Particles to grid: (1)–(4).
 
 use super::{Scheme, Stage, rows, with_scheme};
-use crate::chunk::{CHUNK, Chunk, Padded, Rows};
+use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows};
 use crate::grid::{Reach, Tiles, tile_edge};
 use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_matrix, load_vector};
@@ -99,7 +99,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         stage.lowest = [[T::from_f64(f64::INFINITY); 16]; 3];
         stage.highest = [[T::from_f64(f64::NEG_INFINITY); 16]; 3];
         for start in run.rows().step_by(CHUNK) {
-            self.ask_for(start + CHUNK);
+            self.ask_for(start + AHEAD);
             let count = CHUNK.min(run.end as usize - start);
             let (mass, volume0) = (&self.group.mass, &self.group.volume0);
             let (mass, volume0) = (

@@ -5,8 +5,8 @@
 
 use super::rows::gather_quad;
 use super::scatter::{split_runs, stencil};
-use super::{LARGEST_TILE, Scheme, Stage};
-use crate::chunk::{CHUNK, Chunk, Padded, Rows, pad};
+use super::{Scheme, Stage, TileCopy};
+use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows, pad};
 use crate::dispatch::{on_level, on_portable};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
@@ -90,24 +90,24 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         let Some((middle, row)) = split_runs(runs, grain) else {
             let _flush = crate::float_mode::FlushToZero::enter();
             let (mut stage, mut padded) = (Stage::new(), Padded::new());
-            let mut tile = [T::default(); LARGEST_TILE];
+            let mut tile = TileCopy::new();
             for (index, run) in runs.iter().enumerate() {
                 let number = run.tile as usize;
                 let reach = self.grid.reach_of_rows(number);
-                self.grid.load_tile(self.isa, number, reach, &mut tile);
+                self.grid.load_tile(self.isa, number, reach, &mut tile.0);
                 if let Some(next) = runs.get(index + 1) {
                     let number = next.tile as usize;
                     self.grid
                         .ask_for_nodes(number, self.grid.reach_of_rows(number));
                 }
                 for start in run.rows().step_by(CHUNK) {
-                    self.ask_for(start + CHUNK);
+                    self.ask_for(start + AHEAD);
                     let count = CHUNK.min(run.end as usize - start);
                     let out = &mut out[start - first_row..][..count];
                     let mut values = [T::default(); CHUNK];
                     pad(&mut values, out);
                     padded.with(self.columns, start, count, |chunk| {
-                        self.chunk(chunk, &tile, &mut stage, &mut values);
+                        self.chunk(chunk, &tile.0, &mut stage, &mut values);
                     });
                     out.copy_from_slice(&values[..count]);
                 }
