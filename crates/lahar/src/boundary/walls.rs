@@ -81,6 +81,12 @@ impl<const D: usize> Walls<D> {
         }
     }
 
+    /// Whether particles can leave through a side.
+    pub(crate) fn has_open(&self) -> bool {
+        let is_open = |side: &(Option<f64>, Option<f64>)| side.0.is_some() || side.1.is_some();
+        self.open.iter().any(is_open)
+    }
+
     /// The walls of a scene, and what keeps particles in.
     ///
     /// # Errors
