@@ -28,6 +28,7 @@ use crate::store::{Group, Layout, PerParticle, Run, block_edge, locate};
 use crate::transfer::Scheme;
 use crate::transfer::gather::{Around, MOST_CELLS};
 use crate::transfer::scatter::What;
+use core::borrow::Borrow;
 
 /// How far sound goes, in cells, between two corrections of the fluids' volumes.
 pub(crate) const CORRECTION_INTERVAL: f64 = 5.0;
@@ -257,11 +258,14 @@ fn setup_error<R>(key: &str, message: String) -> Result<R, SetupError> {
 }
 
 impl<T: Instance<D>, const D: usize> Simulation<T, D> {
-    /// Checks the setup and takes in the particles.
+    /// Checks the setup and takes in the particles. Batches that are not borrowed are dropped one after the other.
     ///
     /// # Errors
     /// Names the key that cannot be simulated.
-    pub fn new(setup: Setup<D>, batches: &[ParticleBatch<D>]) -> Result<Self, SetupError> {
+    pub fn new(
+        setup: Setup<D>,
+        batches: impl IntoIterator<Item: Borrow<ParticleBatch<D>>>,
+    ) -> Result<Self, SetupError> {
         let laws = setup
             .materials
             .iter()
@@ -278,7 +282,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     pub fn with_laws(
         setup: Setup<D>,
         laws: Vec<Box<dyn Law<T, D>>>,
-        batches: &[ParticleBatch<D>],
+        batches: impl IntoIterator<Item: Borrow<ParticleBatch<D>>>,
     ) -> Result<Self, SetupError> {
         const { assert!(D == 2 || D == 3, "two or three dimensions") };
         let walls = check(&setup, laws.len())?;
@@ -338,15 +342,20 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         self.take_in(core::slice::from_ref(batch))
     }
 
-    fn take_in(&mut self, batches: &[ParticleBatch<D>]) -> Result<(), SetupError> {
+    fn take_in(
+        &mut self,
+        batches: impl IntoIterator<Item: Borrow<ParticleBatch<D>>>,
+    ) -> Result<(), SetupError> {
         let mut measured = Vec::new();
         for batch in batches {
+            let batch = batch.borrow();
             let first = self.next_id;
             self.append(batch)?;
             if batch.measure_volume {
                 measured.push(first..self.next_id);
             }
         }
+        self.groups.iter_mut().for_each(Group::shrink);
         self.sort();
         self.measure_volumes(&measured);
         self.measure();

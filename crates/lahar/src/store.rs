@@ -75,6 +75,13 @@ impl<T: Copy + PartialEq> PerParticle<T> {
         }
     }
 
+    /// Gives back what room is not used.
+    fn shrink(&mut self) {
+        if let Self::Each(values) = self {
+            values.shrink_to_fit();
+        }
+    }
+
     /// Adds `more` behind the `count` numbers that are there.
     pub(crate) fn extend(&mut self, count: usize, more: impl Iterator<Item = T> + Clone) {
         if let Self::Uniform(value) = self {
@@ -176,6 +183,16 @@ impl<T: Lanes, const D: usize> Group<T, D> {
     pub(crate) fn set_law(&mut self, law: Box<dyn Law<T, D>>) {
         self.sound_speed = sound_speed(&*law, self.density);
         self.law = law;
+    }
+
+    /// Gives back what room is not used.
+    pub(crate) fn shrink(&mut self) {
+        self.columns.iter_mut().for_each(Vec::shrink_to_fit);
+        for each in [&mut self.mass, &mut self.volume0] {
+            each.shrink();
+        }
+        self.id.shrink_to_fit();
+        self.body.shrink();
     }
 
     /// Bytes held, spare capacity included.

@@ -4,7 +4,6 @@ use super::forces::lattice;
 use super::plan::{Body, Plan, Source, Volume};
 use crate::even::even_volumes;
 use crate::sampling::{Random, Sampling, sample};
-use crate::shape::Shape;
 use lahar::boundary::Placed;
 use lahar::material::Fluid;
 use lahar::{Collider, Deformation, Model, ParticleBatch, Setup};
@@ -31,9 +30,9 @@ impl<const D: usize> Plan<D> {
         }
     }
 
-    /// The particles of every body; bodies are numbered in the order of the scene. Where colliders are,
-    /// none are made: with how many were left out of each. What of a list is there is added to
-    /// `warnings`.
+    /// The particles of every body, without the motion that it gives them ([`InMotion`]); bodies are numbered
+    /// in the order of the scene. Where colliders are, none are made: with how many were left out of each.
+    /// What of a list is there is added to `warnings`.
     pub(crate) fn batches(
         &self,
         seed: u64,
@@ -177,8 +176,6 @@ impl<const D: usize> Plan<D> {
             }
             Volume::Particle(volume) => batch.volume = vec![volume],
         }
-        add_motion(&mut batch, body, self.dx);
-        add_spread(&mut batch, body, seed);
         (batch, left_out)
     }
 }
@@ -240,125 +237,4 @@ impl<const D: usize> Inside<'_, D> {
             .collect();
         (!found.is_empty()).then(|| (found.len(), names.join(", ")))
     }
-}
-
-/// Adds v(x) + G (x − centre of mass) to the velocities, and ∂v/∂x + G to the affine matrices.
-fn add_motion<const D: usize>(batch: &mut ParticleBatch<D>, body: &Body<D>, dx: f64) {
-    let turns = body.gradient.iter().flatten().any(|g| *g != 0.0);
-    let constant = body.velocity.is_constant();
-    if !turns && constant {
-        let velocity = body.velocity.constants();
-        if batch.velocity.is_empty() {
-            batch.velocity = vec![velocity];
-        } else {
-            for v in &mut batch.velocity {
-                *v = core::array::from_fn(|i| v[i] + velocity[i]);
-            }
-        }
-        return;
-    }
-    let center = center_of_mass(batch);
-    let count = batch.position.len();
-    batch.velocity.resize(count, [0.0; D]);
-    batch.affine.resize(count, [[0.0; D]; D]);
-    let positions = batch.position.par_chunks(AT_A_TIME);
-    let velocities = batch.velocity.par_chunks_mut(AT_A_TIME);
-    let affine = batch.affine.par_chunks_mut(AT_A_TIME);
-    positions
-        .zip(velocities)
-        .zip(affine)
-        .for_each(|((position, velocity), affine)| {
-            move_by(body, center, dx, position, velocity, affine);
-        });
-}
-
-/// Particles whose formulas are evaluated together.
-const AT_A_TIME: usize = 1 << 14;
-
-/// [`add_motion`] to some of the particles of a body.
-fn move_by<const D: usize>(
-    body: &Body<D>,
-    center: [f64; D],
-    dx: f64,
-    position: &[[f64; D]],
-    velocity: &mut [[f64; D]],
-    affine: &mut [[[f64; D]; D]],
-) {
-    let given = body.velocity.at(position);
-    for (((x, v), c), given) in position.iter().zip(velocity).zip(&mut *affine).zip(given) {
-        for i in 0..D {
-            v[i] += given[i]
-                + (0..D)
-                    .map(|j| body.gradient[i][j] * (x[j] - center[j]))
-                    .sum::<f64>();
-            for j in 0..D {
-                c[i][j] += body.gradient[i][j];
-            }
-        }
-    }
-    if body.velocity.is_constant() {
-        return;
-    }
-    // The gradient over a cell, which is what the grid can tell.
-    for j in 0..D {
-        let beside = |step: f64| -> Vec<[f64; D]> {
-            let mut places = position.to_vec();
-            places.iter_mut().for_each(|x| x[j] += step);
-            body.velocity.at(&places)
-        };
-        let (low, high) = (beside(-0.5 * dx), beside(0.5 * dx));
-        for ((c, low), high) in affine.iter_mut().zip(low).zip(high) {
-            for i in 0..D {
-                c[i][j] += (high[i] - low[i]) / dx;
-            }
-        }
-    }
-}
-
-/// Adds to each velocity up to the body's spread, at random.
-fn add_spread<const D: usize>(batch: &mut ParticleBatch<D>, body: &Body<D>, seed: u64) {
-    if body.velocity_spread == [0.0; D] {
-        return;
-    }
-    if let [one] = batch.velocity[..] {
-        batch.velocity = vec![one; batch.position.len()];
-    }
-    // Numbers of its own, so that positions do not depend on the spread.
-    let mut random = Random::new(!seed, u64::from(batch.body));
-    for v in &mut batch.velocity {
-        for (v, spread) in v.iter_mut().zip(body.velocity_spread) {
-            *v += spread * (2.0 * random.unit() - 1.0);
-        }
-    }
-}
-
-fn center_of_mass<const D: usize>(batch: &ParticleBatch<D>) -> [f64; D] {
-    // Weights need not be masses: all particles of a body have one density.
-    let weights = if batch.mass.is_empty() {
-        &batch.volume
-    } else {
-        &batch.mass
-    };
-    let weight = |i: usize| {
-        if weights.len() == batch.position.len() {
-            weights[i]
-        } else {
-            1.0
-        }
-    };
-    // Summed from the middle of the bounds, so that nothing is lost far from the origin.
-    let bounds = Shape::Polygon {
-        points: batch.position.clone(),
-    }
-    .bounds();
-    let middle: [f64; D] = core::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]));
-    let mut total = 0.0;
-    let mut sum = [0.0; D];
-    for (i, x) in batch.position.iter().enumerate() {
-        total += weight(i);
-        for k in 0..D {
-            sum[k] += weight(i) * (x[k] - middle[k]);
-        }
-    }
-    core::array::from_fn(|k| middle[k] + sum[k] / total)
 }

@@ -28,6 +28,7 @@ mod files;
 mod forces;
 mod formula;
 mod keys;
+mod motion;
 mod plan;
 mod preset;
 mod probes;
@@ -54,6 +55,7 @@ use document::{Document, Span, json_table};
 pub use files::SceneFile;
 use files::{Files, Place, read_text};
 use lahar::{Isa, Simulate, Simulation, TimeStep};
+use motion::InMotion;
 use plan::Plan;
 use read::Reader;
 use std::fmt;
@@ -346,10 +348,7 @@ impl Scene {
         &self,
         plan: &Plan<D>,
         isa: Isa,
-        make: impl Fn(
-            lahar::Setup<D>,
-            &[lahar::ParticleBatch<D>],
-        ) -> Result<Box<dyn Simulate>, lahar::SetupError>,
+        make: impl Fn(lahar::Setup<D>, InMotion<'_, D>) -> Result<Box<dyn Simulate>, lahar::SetupError>,
     ) -> Result<Built, SceneError> {
         let mut warnings = self.warnings.clone();
         let (batches, left_out) = plan.batches(self.seed, &mut warnings);
@@ -369,12 +368,14 @@ impl Scene {
         for (first, second, inside) in plan.overlaps(&batches) {
             warnings.push(format!("bodies \"{}\" and \"{}\" overlap: {inside} particles of the second start inside the first", plan.bodies[first].name, plan.bodies[second].name));
         }
-        let simulation = make(plan.setup(isa), &batches).map_err(|error| {
+        let body_particles = batches.iter().map(|batch| batch.position.len()).collect();
+        let batches = InMotion::new(plan, batches, self.seed);
+        let simulation = make(plan.setup(isa), batches).map_err(|error| {
             self.error_at(&error.key, format!("{}: {}", error.key, error.message))
         })?;
         Ok(Built {
             simulation,
-            body_particles: batches.iter().map(|batch| batch.position.len()).collect(),
+            body_particles,
             left_out,
             warnings,
         })
