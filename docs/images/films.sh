@@ -23,7 +23,7 @@ film() {
 # The scenes and how many frames of each are worth watching.
 declare -A frames=(
     [dam-break]=180 [water-jelly-snow]=90 [jelly-letters]=90 [gears]=120 [snow-castle]=60
-    [snowballs]=60 [honey]=120 [galaxy]=180 [knot-3d]=60 [drops-3d]=90
+    [snowballs]=60 [honey]=120 [galaxy]=180 [knot-3d]=60 [drops-3d]=72
 )
 scenes=(dam-break water-jelly-snow jelly-letters gears snow-castle snowballs honey galaxy knot-3d drops-3d)
 [ $# -gt 0 ] && scenes=("$@")

@@ -9,7 +9,6 @@ use lahar::Command;
 use lahar_io::scene::{Comparison, Controls};
 
 use crate::camera::{Camera, V3, length, scale};
-use crate::collider_lines::collider_lines;
 use crate::colour::{self, ColourBy, Range};
 use crate::compare::Draft;
 use crate::controls::{Action, Direction};
@@ -461,8 +460,7 @@ impl AppState {
             self.set_colour_by(by);
         }
         self.palette = colour::palette(&facts.swatches);
-        self.background = (facts.angle.background)
-            .map_or(colour::BACKGROUND, |[r, g, b]| Color32::from_rgb(r, g, b));
+        self.background = colour::background(facts);
         self.radius = usual_radius(facts);
         self.hand = Hand::of(
             facts.controls,
@@ -537,13 +535,13 @@ impl AppState {
             slot: side,
             sprites: Arc::clone(self.sprites.get(side)?),
             lines: Arc::clone(self.lines.get(side).unwrap_or(&self.scenery.lines)),
-            view: View {
-                view: camera.view(self.scenery.origin),
-                projection: camera.projection(self.aspect),
+            view: View::new(
+                camera,
+                self.scenery.origin,
+                self.aspect,
                 pixels,
-                radius: self.radius,
-                unused: 0.0,
-            },
+                self.radius,
+            ),
             solid: camera.dimension == 3,
             background: self.background,
         })
@@ -555,19 +553,8 @@ impl AppState {
             self.lines.clear();
             return;
         };
-        let lines_at = |time: f64| {
-            let scenery = &self.scenery;
-            let moving = collider_lines(
-                &facts.colliders,
-                time,
-                facts.dimension,
-                scenery.extent,
-                scenery.origin,
-            );
-            Arc::new([scenery.lines.as_slice(), &moving].concat())
-        };
         self.lines = (self.shown.sides.iter())
-            .map(|side| lines_at(side.snapshot.time))
+            .map(|side| self.scenery.lines_at(facts, side.snapshot.time))
             .collect();
     }
 

@@ -2,7 +2,7 @@
 
 use eframe::egui::Color32;
 use lahar::{Field, Snapshot};
-use lahar_io::image::{Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along};
+use lahar_io::image::{Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, body_colour};
 
 use crate::scenes::{Facts, Look, Swatch};
 
@@ -21,6 +21,8 @@ pub enum ColourBy {
     /// What they are made of.
     #[default]
     Material,
+    /// Which body they belong to.
+    Body,
     /// |v| \[m/s\].
     Speed,
     /// −tr σ/d \[Pa\].
@@ -33,8 +35,9 @@ pub enum ColourBy {
 
 impl ColourBy {
     /// All, in the order of the key C.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Material,
+        Self::Body,
         Self::Speed,
         Self::Pressure,
         Self::Density,
@@ -51,6 +54,7 @@ impl ColourBy {
     pub fn name(self) -> &'static str {
         match self {
             Self::Material => "material",
+            Self::Body => "body",
             Self::Speed => "speed",
             Self::Pressure => "pressure",
             Self::Density => "density",
@@ -61,7 +65,7 @@ impl ColourBy {
     /// Unit of its numbers, in `dimension` dimensions.
     pub fn unit(self, dimension: usize) -> &'static str {
         match (self, dimension) {
-            (Self::Material | Self::Jacobian, _) => "",
+            (Self::Material | Self::Body | Self::Jacobian, _) => "",
             (Self::Speed, _) => "m/s",
             (Self::Pressure, _) => "Pa",
             (Self::Density, 2) => "kg/m²",
@@ -72,7 +76,7 @@ impl ColourBy {
     /// Fields that it needs of a snapshot.
     pub fn fields(self) -> Vec<Field> {
         match self {
-            Self::Material => vec![],
+            Self::Material | Self::Body => vec![],
             Self::Speed => vec![Field::Velocity],
             Self::Pressure => vec![Field::Pressure],
             Self::Density => vec![Field::Mass, Field::Jacobian],
@@ -80,12 +84,12 @@ impl ColourBy {
         }
     }
 
-    /// One number a particle; `None` for [`ColourBy::Material`], and while the snapshot has not
+    /// One number a particle; `None` where colours are not of numbers, and while the snapshot has not
     /// got the fields.
     pub fn values(self, snapshot: &Snapshot) -> Option<Vec<f32>> {
         let get = |field| snapshot.get(field).map(lahar::Data::to_f32);
         match self {
-            Self::Material => None,
+            Self::Material | Self::Body => None,
             Self::Speed => Some(
                 get(Field::Velocity)?
                     .chunks_exact(snapshot.dimension)
@@ -109,7 +113,7 @@ impl ColourBy {
     /// The colours of its range, low to high, evenly spaced.
     pub fn ramp(self) -> &'static [Colour] {
         match self {
-            Self::Material => &[],
+            Self::Material | Self::Body => &[],
             Self::Speed => &SPEED_RAMP,
             Self::Pressure => &PRESSURE_RAMP,
             Self::Density | Self::Jacobian => &REST_RAMP,
@@ -131,7 +135,7 @@ impl ColourBy {
         let quantile = |q: f32| sample[((sample.len() - 1) as f32 * q).round() as usize];
         let (low, high) = (quantile(0.01), quantile(0.99));
         Some(match self {
-            Self::Material => (0.0, 1.0),
+            Self::Material | Self::Body => (0.0, 1.0),
             Self::Speed => (0.0, high),
             Self::Pressure => (if -low < 1e-3 * high { 0.0 } else { low }, high),
             // Symmetric about rest, which is what most particles are near.
@@ -158,6 +162,14 @@ pub struct Range {
 }
 
 impl Range {
+    /// The range of `by` from the first of `ends` to the second.
+    pub fn of(by: ColourBy, ends: (f32, f32)) -> Self {
+        Self {
+            by,
+            ends: Some(ends),
+        }
+    }
+
     /// The ends; (0, 1) before there is anything.
     pub fn ends(&self) -> (f32, f32) {
         self.ends.unwrap_or((0.0, 1.0))
@@ -193,6 +205,11 @@ impl Range {
     pub fn forget(&mut self) {
         self.ends = None;
     }
+}
+
+/// What is behind a scene at first.
+pub(crate) fn background(facts: &Facts) -> Color32 {
+    (facts.angle.background).map_or(BACKGROUND, |[r, g, b]| Color32::from_rgb(r, g, b))
 }
 
 /// Colours of the swatches at first; the person at the window may change them.
@@ -256,13 +273,25 @@ pub fn colours(
             })
             .collect();
     }
+    let bodies = snapshot.get(Field::Body);
+    if by == ColourBy::Body {
+        let opaque = |[r, g, b]: Colour| [r, g, b, 255];
+        let of_body = |body: usize| match facts.bodies.get(body) {
+            Some((_, colour)) => opaque(*colour),
+            None => opaque(body_colour(body)),
+        };
+        return match bodies {
+            Some(lahar::Data::U32(bodies)) => bodies.iter().map(|&b| of_body(b as usize)).collect(),
+            _ => vec![of_body(0); snapshot.count],
+        };
+    }
     let first = palette.first().copied().unwrap_or(LIQUID).to_array();
     let of_body: Vec<[u8; 4]> = facts
         .body_swatches
         .iter()
         .map(|&swatch| palette.get(swatch).map_or(first, Color32::to_array))
         .collect();
-    match snapshot.get(Field::Body) {
+    match bodies {
         Some(lahar::Data::U32(bodies)) => bodies
             .iter()
             .map(|&body| of_body.get(body as usize).copied().unwrap_or(first))

@@ -210,7 +210,7 @@ const REPLAY: &[Hint] = &[
 const ALWAYS: &[Hint] = &[
     hint("1 to 9", "choose a scene, L: any of them, by typing"),
     hint("+ -", "faster, slower"),
-    hint("C", "colours: material, speed, pressure, density, J"),
+    hint("C", "colours: material, body, speed, pressure, density, J"),
     hint("Shift, Ctrl+arrows", "orbit, move the view"),
     hint("Page Up, Down", "zoom, F: fit the view"),
     hint("Tab, Esc", "into the panel, out of it; Esc: leave"),

@@ -7,6 +7,8 @@
 //!
 //! A scene runs alone or, to compare settings, several times side by side; a finished run is replayed.
 //!
+//! The same renderer draws a run's frames into pictures, without a window: [`Painter`].
+//!
 //! [`run`] opens it. [`app_state`] holds what the window knows and decides, and needs no window;
 //! [`solver`] runs the simulation; [`renderer`] draws. Where there is no display or nothing to draw
 //! with, [`run`] says so in its error, before anything is opened, and a caller may go on without.
@@ -20,6 +22,7 @@ pub mod controls;
 pub mod hand;
 mod meter;
 mod overlay;
+mod painter;
 pub mod panel;
 pub mod renderer;
 mod scene_list;
@@ -45,6 +48,7 @@ pub use controls::key_help;
 use lahar::Isa;
 use lahar_io::scene::Comparison;
 use meter::Meter;
+pub use painter::{PaintError, Painter};
 use scenes::SceneSource;
 use shelf::Shelf;
 use solver::{Solver, Wanted};
@@ -219,9 +223,14 @@ fn check_adapter(wanted: &wgpu::InstanceDescriptor) -> Result<(), AppError> {
     });
     let found = pollster::block_on(instance.enumerate_adapters(backends));
     if found.is_empty() {
-        return Err(AppError::NoAdapter(format!(
-            "looked for {backends:?} (on Linux, a software adapter comes with the package mesa-vulkan-drivers)"
-        )));
+        return Err(AppError::NoAdapter(no_adapter(backends)));
     }
     Ok(())
+}
+
+/// That there is none of these.
+fn no_adapter(backends: wgpu::Backends) -> String {
+    format!(
+        "looked for {backends:?} (on Linux, a software adapter comes with the package mesa-vulkan-drivers)"
+    )
 }

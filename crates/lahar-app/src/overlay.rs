@@ -50,6 +50,9 @@ pub(crate) fn hand(state: &AppState, ui: &Ui, rect: Rect) {
     painter.circle_filled(centre, 3.0, colour);
 }
 
+/// Bodies that a legend has room for.
+const MOST_NAMED: usize = 12;
+
 /// What the colours mean, under the title.
 pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     let painter = ui.painter_at(rect);
@@ -57,15 +60,34 @@ pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     let Some(facts) = state.facts() else { return };
     let below_title = if shows_numbers(state) { 60.0 } else { 40.0 };
     let corner = rect.left_top() + vec2(14.0, below_title);
-    if state.colour_by == ColourBy::Material {
-        if facts.swatches.len() < 2 {
+    let named: Option<Vec<(&str, Color32)>> = match state.colour_by {
+        ColourBy::Material => {
+            let swatches = facts.swatches.iter().zip(&state.palette);
+            Some(
+                swatches
+                    .map(|(s, &colour)| (s.name.as_str(), colour))
+                    .collect(),
+            )
+        }
+        ColourBy::Body => {
+            let bodies = facts.bodies.iter().take(MOST_NAMED);
+            Some(
+                bodies
+                    .map(|(name, [r, g, b])| (name.as_str(), Color32::from_rgb(*r, *g, *b)))
+                    .collect(),
+            )
+        }
+        _ => None,
+    };
+    if let Some(named) = named {
+        if named.len() < 2 {
             return; // one needs no telling apart
         }
-        for (i, (swatch, colour)) in facts.swatches.iter().zip(&state.palette).enumerate() {
+        for (i, (name, colour)) in named.into_iter().enumerate() {
             let at = corner + vec2(6.0, 8.0 + 20.0 * i as f32);
-            painter.circle_filled(at, 5.0, *colour);
+            painter.circle_filled(at, 5.0, colour);
             let at = at + vec2(12.0, 0.0);
-            painter.text(at, Align2::LEFT_CENTER, &swatch.name, font.clone(), INK);
+            painter.text(at, Align2::LEFT_CENTER, name, font.clone(), INK);
         }
         return;
     }

@@ -6,6 +6,7 @@ use eframe::egui::Color32;
 use lahar::{Field, Snapshot};
 
 use crate::camera::{V3, add, against, corners, scale, sub};
+use crate::collider_lines::collider_lines;
 use crate::colour::{ColourBy, Range, colours};
 use crate::renderer::{Line, Sprites};
 use crate::scenes::Facts;
@@ -35,6 +36,16 @@ impl Scenery {
             origin,
             lines: Arc::new(outline(facts, extent, origin)),
         }
+    }
+
+    /// Its lines and those of the colliders, at `time` \[s\].
+    pub(crate) fn lines_at(&self, facts: &Facts, time: f64) -> Arc<Vec<Line>> {
+        if facts.colliders.is_empty() {
+            return Arc::clone(&self.lines);
+        }
+        let (extent, origin) = (self.extent, self.origin);
+        let moving = collider_lines(&facts.colliders, time, facts.dimension, extent, origin);
+        Arc::new([self.lines.as_slice(), &moving].concat())
     }
 
     /// Its smallest side \[m\].

@@ -72,6 +72,8 @@ pub struct Facts {
     pub swatches: Vec<Swatch>,
     /// Index into `swatches`, by the number of a body; a body beyond the end is drawn as the first.
     pub body_swatches: Vec<usize>,
+    /// Bodies by number: their names, and what they are drawn in where colours tell bodies apart.
+    pub bodies: Vec<(String, [u8; 3])>,
     /// How the scene wants to be looked at.
     pub angle: Angle,
     /// What keys and mouse do.

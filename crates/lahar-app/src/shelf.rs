@@ -7,7 +7,7 @@ use std::path::Path;
 
 use lahar::{Field, Isa};
 use lahar_io::builtin;
-use lahar_io::image::{Picture, Renderer, Scenery, Style};
+use lahar_io::image::{Picture, Renderer, Scenery, Style, body_colour};
 use lahar_io::output::Recording;
 use lahar_io::scene::{Controls, Scene, colliders_of};
 use serde_json::Value;
@@ -80,6 +80,7 @@ impl SceneSource for Shelf {
             frames: None,
             swatches,
             body_swatches,
+            bodies: bodies(&resolved),
             angle: angle(&resolved),
             controls: scene.controls,
             settings: settings(&resolved),
@@ -122,15 +123,24 @@ impl SceneSource for Shelf {
 /// A finished run, from its first frame.
 fn replay(folder: &Path) -> Result<Stage, String> {
     let recording = Recording::open(folder).map_err(|error| error.to_string())?;
+    let facts = recorded(&recording, &recording.record().scene);
+    Ok(Stage {
+        facts,
+        footage: Footage::Recording(Box::new(recording)),
+    })
+}
+
+/// What stays the same in a run, `scene` being its scene with its defaults filled in.
+pub(crate) fn recorded(recording: &Recording, scene: &Value) -> Facts {
     let record = recording.record();
-    let scene = &record.scene;
+    let folder = recording.folder();
     let (swatches, body_swatches) = swatches(scene);
     let corner = |end: &str| vector(&scene["domain"][end]);
-    let facts = Facts {
+    Facts {
         card: SceneCard {
             name: folder.display().to_string(),
             title: title(scene, &record.scene_name),
-            sentence: format!("The run in {}.", recording.folder().display()),
+            sentence: format!("The run in {}.", folder.display()),
             dimension: record.dimension,
         },
         dimension: record.dimension,
@@ -143,6 +153,7 @@ fn replay(folder: &Path) -> Result<Stage, String> {
         frames: Some(recording.len()),
         swatches,
         body_swatches,
+        bodies: bodies(scene),
         angle: angle(scene),
         controls: Controls {
             speed: scene["controls"]["speed"].as_f64().unwrap_or(1.0),
@@ -151,11 +162,7 @@ fn replay(folder: &Path) -> Result<Stage, String> {
         settings: vec![],
         numbers: format!("{}, {}", record.precision, record.isa),
         warnings: record.warnings.clone(),
-    };
-    Ok(Stage {
-        facts,
-        footage: Footage::Recording(Box::new(recording)),
-    })
+    }
 }
 
 /// Of runs whose record does not say \[1/s\].
@@ -195,6 +202,7 @@ fn angle(scene: &Value) -> Angle {
         particle_radius: camera["particle_radius"].as_f64(),
         background: colour(&camera["background"]),
         colour_by: match camera["color_by"].as_str() {
+            Some("body") => ColourBy::Body,
             Some("speed") => ColourBy::Speed,
             Some("pressure") => ColourBy::Pressure,
             Some("density") => ColourBy::Density,
@@ -250,6 +258,25 @@ fn settings(scene: &Value) -> Vec<Setting> {
     settings
 }
 
+/// The bodies, by number.
+fn bodies(scene: &Value) -> Vec<(String, [u8; 3])> {
+    let tables = scene["bodies"].as_array().into_iter().flatten();
+    tables
+        .enumerate()
+        .map(|(number, table)| {
+            let own = colour(&table["color"]);
+            (
+                body_name(table, number),
+                own.unwrap_or_else(|| body_colour(number)),
+            )
+        })
+        .collect()
+}
+
+fn body_name(table: &Value, number: usize) -> String {
+    (table["name"].as_str()).map_or_else(|| format!("body-{number}"), str::to_owned)
+}
+
 /// The materials, then the bodies that have colours of their own; and which is whose.
 fn swatches(scene: &Value) -> (Vec<Swatch>, Vec<usize>) {
     let empty = serde_json::Map::new();
@@ -277,8 +304,7 @@ fn swatches(scene: &Value) -> (Vec<Swatch>, Vec<usize>) {
                 .unwrap_or(0),
             Some(colour) => {
                 swatches.push(Swatch {
-                    name: (body["name"].as_str())
-                        .map_or_else(|| format!("body-{number}"), str::to_owned),
+                    name: body_name(body, number),
                     look: look(material),
                     colour: Some(colour),
                 });

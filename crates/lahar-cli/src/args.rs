@@ -50,7 +50,7 @@ pub(crate) enum Command {
     Show(Show),
     /// Write a commented scene to start from
     New(New),
-    /// Make surface meshes of a run's particles, by material
+    /// Make surface meshes of a 3D run's particles, by material
     #[cfg(feature = "mesh")]
     Mesh(Mesh),
     /// Draw a run's frames: pictures, and a film
@@ -219,15 +219,14 @@ pub(crate) struct New {
     pub(crate) file: PathBuf,
 }
 
-/// Options of `mesh`.
-#[cfg(feature = "mesh")]
-#[derive(Debug, clap::Args)]
-pub(crate) struct Mesh {
-    /// A folder that `lahar run` has written, of a run in 3D with npz frames
+/// Frames of a run, and where what is made of them goes: what `mesh` and `render` have in common.
+#[derive(Debug, Default, clap::Args)]
+pub(crate) struct Recorded {
+    /// A folder that `lahar run` has written with npz frames; it need not have come to its end
     #[arg(value_name = "DIR")]
     pub(crate) run: PathBuf,
 
-    /// The folder to write; meshes/ in the run's folder if not given
+    /// The folder to write; meshes/ or render/ in the run's folder if not given
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 
@@ -239,6 +238,14 @@ pub(crate) struct Mesh {
         hide_default_value = true
     )]
     pub(crate) frames: Frames,
+}
+
+/// Options of `mesh`.
+#[cfg(feature = "mesh")]
+#[derive(Debug, clap::Args)]
+pub(crate) struct Mesh {
+    #[command(flatten)]
+    pub(crate) recorded: Recorded,
 
     /// The materials; all if not given
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
@@ -265,24 +272,10 @@ pub(crate) struct Mesh {
 /// Options of `render`.
 #[derive(Debug, Default, clap::Args)]
 pub(crate) struct Render {
-    /// A folder that `lahar run` has written with npz frames; it need not have come to its end
-    #[arg(value_name = "DIR")]
-    pub(crate) run: PathBuf,
+    #[command(flatten)]
+    pub(crate) recorded: Recorded,
 
-    /// The folder to write; render/ in the run's folder if not given
-    #[arg(short, long, value_name = "DIR")]
-    pub(crate) output: Option<PathBuf>,
-
-    /// The frames, by number: 12, 0..60, 0..60:5 (every fifth) or 10..; all if not given
-    #[arg(
-        long,
-        value_name = "FRAMES",
-        default_value = "0..",
-        hide_default_value = true
-    )]
-    pub(crate) frames: Frames,
-
-    /// Make a film, too: video.gif, and video.mp4 where ffmpeg is installed
+    /// Make a film, too: video.gif, and video.mp4 where ffmpeg is installed or the program was built with the feature mp4
     #[arg(long)]
     pub(crate) video: bool,
 
@@ -302,9 +295,26 @@ pub(crate) struct Render {
     #[arg(long, value_name = "WHAT")]
     pub(crate) color_by: Option<String>,
 
+    /// What draws: the window's renderer, on a graphics adapter or one in software (no display is needed), or the
+    /// processor; auto: the window's where that works
+    #[arg(long, value_name = "WHICH", value_enum, default_value_t)]
+    pub(crate) renderer: Renderer,
+
     /// Set a key of the scene, as in `--set camera.height=2`
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
+}
+
+/// What draws pictures.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Renderer {
+    /// The window's renderer where that works, else the processor
+    #[default]
+    Auto,
+    /// The window's renderer
+    Gpu,
+    /// The processor
+    Cpu,
 }
 
 /// Pixels.

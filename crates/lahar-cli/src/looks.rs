@@ -13,29 +13,34 @@ pub(crate) fn film_size([width, height]: [u32; 2]) -> [u32; 2] {
     [film_width, film_height.round() as u32]
 }
 
+/// What colours mean in pictures of `scene`.
+pub(crate) fn colouring(scene: &Scene, scenery: &Scenery) -> Colouring {
+    match scene.camera.color_by.as_str() {
+        "body" => Colouring::Body,
+        "speed" => Colouring::Speed(scenery.speed.max(1e-3)),
+        "pressure" => Colouring::Pressure(0.0, pressure_scale(scene, scenery)),
+        "density" => {
+            let squeeze = squeeze(scene, scenery);
+            let densities = || scene.materials.iter().map(|m| m.density);
+            let least = densities().fold(f64::INFINITY, f64::min);
+            let most = densities().fold(0.0, f64::max);
+            Colouring::Density(least * (1.0 - squeeze), most * (1.0 + squeeze))
+        }
+        "J" => {
+            let squeeze = squeeze(scene, scenery);
+            Colouring::Jacobian(1.0 - squeeze, 1.0 + squeeze)
+        }
+        _ => Colouring::Material,
+    }
+}
+
 /// Draws `scene` in pictures of this size \[pixels\].
 pub(crate) fn renderer(scene: &Scene, scenery: &Scenery, [width, height]: [u32; 2]) -> Renderer {
     let camera = &scene.camera;
     let style = Style {
         width,
         height,
-        colouring: match camera.color_by.as_str() {
-            "body" => Colouring::Body,
-            "speed" => Colouring::Speed(scenery.speed.max(1e-3)),
-            "pressure" => Colouring::Pressure(0.0, pressure_scale(scene, scenery)),
-            "density" => {
-                let squeeze = squeeze(scene, scenery);
-                let densities = || scene.materials.iter().map(|m| m.density);
-                let least = densities().fold(f64::INFINITY, f64::min);
-                let most = densities().fold(0.0, f64::max);
-                Colouring::Density(least * (1.0 - squeeze), most * (1.0 + squeeze))
-            }
-            "J" => {
-                let squeeze = squeeze(scene, scenery);
-                Colouring::Jacobian(1.0 - squeeze, 1.0 + squeeze)
-            }
-            _ => Colouring::Material,
-        },
+        colouring: colouring(scene, scenery),
         ..Style::default()
     };
     let mut scenery = scenery.clone();

@@ -18,6 +18,7 @@ mod looks;
 mod mesh;
 mod new;
 mod page;
+mod painter;
 mod plan;
 mod plot;
 mod progress;

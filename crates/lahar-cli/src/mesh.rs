@@ -11,9 +11,9 @@ use crate::error::{CliError, INTERRUPTED};
 use crate::recorded::{self, End};
 use crate::{args, terminal};
 
-/// Makes the meshes of `args.run`.
+/// Makes the meshes of `args.recorded.run`.
 pub(crate) fn mesh(args: &args::Mesh) -> Result<ExitCode, CliError> {
-    let recording = recorded::open(&args.run)?;
+    let recording = recorded::open(&args.recorded.run)?;
     if recording.record().dimension != 3 {
         return Err(CliError::Usage(format!(
             "{} is a run in 2D; surfaces are made of runs in 3D",
@@ -26,13 +26,13 @@ pub(crate) fn mesh(args: &args::Mesh) -> Result<ExitCode, CliError> {
         cube: args.cube,
         smoothing: args.smoothing,
     };
-    let folder = match &args.output {
+    let folder = match &args.recorded.output {
         Some(folder) => folder.clone(),
         None => recording.folder().join("meshes"),
     };
     let names: Vec<&str> = materials.iter().map(|(_, name)| name.as_str()).collect();
     let mut files = MeshFiles::create(&folder, &names, &formats)?;
-    let end = recorded::each(&recording, args.frames, |number, snapshot| {
+    let end = recorded::each(&recording, args.recorded.frames, |number, snapshot| {
         let mut triangles = 0;
         for (index, name) in &materials {
             let (positions, volume) = particles(snapshot, *index).map_err(CliError::Usage)?;

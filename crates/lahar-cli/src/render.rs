@@ -5,33 +5,76 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use lahar_io::image::{self, Mp4, Picture, Scenery};
+use lahar_io::image::{self, Mp4, Mp4Maker, Picture};
 use lahar_io::output::{Recording, film_pace, frame_name};
 use lahar_io::scene::Scene;
 
 use crate::error::{CliError, INTERRUPTED};
+use crate::painter::{Painter, Subject};
 use crate::recorded::{self, End};
-use crate::{args, looks, terminal};
+use crate::{args, terminal};
 
-/// Draws the frames of `args.run`.
+/// Draws the frames of `args.recorded.run`.
 pub(crate) fn render(args: &args::Render) -> Result<ExitCode, CliError> {
-    let recording = recorded::open(&args.run)?;
+    let recording = recorded::open(&args.recorded.run)?;
     let scene = recorded::scene(&recording, &changes(args))?;
-    let chosen = recorded::chosen(&recording, args.frames)?;
+    let chosen = recorded::chosen(&recording, args.recorded.frames)?;
     let first = recording.frame(0).map_err(recorded::unreadable)?;
-    let size = args.size.map_or(scene.output.picture_size, |size| size.0);
-    let renderer = looks::renderer(&scene, &Scenery::recorded(&scene, &first), size);
-    let folder = match &args.output {
+    let subject = Subject {
+        recording: &recording,
+        scene: &scene,
+        first: &first,
+        size: args.size.map_or(scene.output.picture_size, |size| size.0),
+    };
+    let mut painter = Painter::choose(args.renderer, &subject)?;
+    let folder = match &args.recorded.output {
         Some(folder) => folder.clone(),
         None => recording.folder().join("render"),
     };
     fs::create_dir_all(&folder).map_err(|error| cannot(&folder, &error))?;
-    let mut films = match args.video {
-        true => Some(Films::new(&folder, film_rate(&recording, &scene, &chosen))),
-        false => None,
+    let rate = film_rate(&recording, &scene, &chosen);
+    let end = match draw(args, &recording, &folder, rate, &mut painter)? {
+        Drawn::All(end) => end,
+        Drawn::Failed(why) if args.renderer == args::Renderer::Gpu => {
+            return Err(CliError::Machine(format!("--renderer gpu: {why}")));
+        }
+        // From the first frame on: a film has one look.
+        Drawn::Failed(why) => {
+            painter = Painter::cpu(&subject, Some(&why));
+            match draw(args, &recording, &folder, rate, &mut painter)? {
+                Drawn::All(end) => end,
+                Drawn::Failed(why) => return Err(CliError::Machine(why)),
+            }
+        }
     };
-    let end = recorded::each(&recording, args.frames, |number, snapshot| {
-        let picture = renderer.render(snapshot);
+    Ok(match end {
+        End::Done => ExitCode::SUCCESS,
+        End::Interrupted => ExitCode::from(INTERRUPTED),
+    })
+}
+
+/// What came of drawing.
+enum Drawn {
+    All(End),
+    /// The painter can draw no more, and why.
+    Failed(String),
+}
+
+/// Draws all chosen frames into `folder`.
+fn draw(
+    args: &args::Render,
+    recording: &Recording,
+    folder: &Path,
+    rate: f64,
+    painter: &mut Painter,
+) -> Result<Drawn, CliError> {
+    let mut films = args.video.then(|| Films::new(folder, rate));
+    let mut failed = None;
+    let end = recorded::each(recording, args.recorded.frames, |number, snapshot| {
+        let picture = painter.render(snapshot).map_err(|why| {
+            failed = Some(format!("frame {number}: {why}"));
+            CliError::Machine(why)
+        })?;
         if !args.no_images {
             let path = folder.join(frame_name(number, "png"));
             picture
@@ -42,17 +85,18 @@ pub(crate) fn render(args: &args::Render) -> Result<ExitCode, CliError> {
             films.push(&picture)?;
         }
         Ok(format!("t = {:.3} s", snapshot.time))
-    })?;
+    });
+    if let Some(why) = failed {
+        return Ok(Drawn::Failed(why));
+    }
+    let end = end?;
     if !args.no_images {
         terminal::print(&format!("  {}/\n", folder.display()));
     }
     if let Some(films) = films {
         films.finish()?;
     }
-    Ok(match end {
-        End::Done => ExitCode::SUCCESS,
-        End::Interrupted => ExitCode::from(INTERRUPTED),
-    })
+    Ok(Drawn::All(end))
 }
 
 /// What the options say of the scene's camera.
@@ -87,23 +131,26 @@ fn cannot(path: &Path, error: &std::io::Error) -> CliError {
     CliError::Machine(format!("{}: cannot write: {error}", path.display()))
 }
 
-/// The films under way: a GIF always, MP4 where there is ffmpeg.
+/// The films under way: a GIF always, MP4 where there is something that makes it.
 struct Films {
     gif: (PathBuf, image::Film),
-    mp4: Option<(PathBuf, Option<Mp4>)>,
+    mp4: Option<(PathBuf, Mp4Maker, Option<Mp4>)>,
     rate: f64,
 }
 
 impl Films {
     fn new(folder: &Path, rate: f64) -> Self {
-        let version = Mp4::available();
-        terminal::note(&match &version {
-            Some(version) => format!("video: GIF by lahar, MP4 by {version}"),
-            None => "video: GIF by lahar; for MP4 too, install ffmpeg".to_owned(),
+        let maker = Mp4Maker::find();
+        terminal::note(&match &maker {
+            Some(maker) => format!("video: GIF by lahar, MP4 by {maker}"),
+            None => {
+                "video: GIF by lahar; for MP4 too, install ffmpeg or build with the feature mp4"
+                    .to_owned()
+            }
         });
         Self {
             gif: (folder.join("video.gif"), image::Film::new(rate)),
-            mp4: version.map(|_| (folder.join("video.mp4"), None)),
+            mp4: maker.map(|maker| (folder.join("video.mp4"), maker, None)),
             rate,
         }
     }
@@ -111,13 +158,13 @@ impl Films {
     fn push(&mut self, picture: &Picture) -> Result<(), CliError> {
         let (path, film) = &mut self.gif;
         film.push(picture).map_err(|error| cannot(path, &error))?;
-        let Some((path, film)) = &mut self.mp4 else {
+        let Some((path, maker, film)) = &mut self.mp4 else {
             return Ok(());
         };
         let running = match film {
             Some(running) => running,
             None => film.insert(
-                Mp4::start(path, self.rate, picture).map_err(|error| cannot(path, &error))?,
+                (maker.start(path, self.rate, picture)).map_err(|error| cannot(path, &error))?,
             ),
         };
         if running.push(picture).is_err()
@@ -138,7 +185,7 @@ impl Films {
         };
         write().map_err(|error| cannot(&path, &error))?;
         terminal::print(&format!("  {}\n", path.display()));
-        if let Some((path, Some(film))) = self.mp4 {
+        if let Some((path, _, Some(film))) = self.mp4 {
             film.finish().map_err(|error| cannot(&path, &error))?;
             terminal::print(&format!("  {}\n", path.display()));
         }

@@ -9,15 +9,18 @@ use tempfile::TempDir;
 /// The default scene, coarse enough for a test.
 const COARSE: [&str; 4] = ["dam-break", "--set", "dx=0.05", "--threads=1"];
 
+/// The program, in a folder and without a display.
+fn program(folder: &Path) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lahar"));
+    command.current_dir(folder);
+    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+        command.env_remove(display);
+    }
+    command
+}
+
 fn lahar(folder: &Path, words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_lahar"))
-        .current_dir(folder)
-        .args(words)
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("WAYLAND_SOCKET")
-        .output()
-        .expect("the binary starts")
+    (program(folder).args(words).output()).expect("the binary starts")
 }
 
 fn run(folder: &Path, words: &[&str]) -> Output {
@@ -742,6 +745,8 @@ fn a_finished_run_is_drawn_and_told_of() {
     let drawn = names(&here.path().join("r/render"));
     assert_eq!(drawn[..3], ["000001.png", "000003.png", "video.gif"]);
 
+    assert!(errors(&output).contains("pictures by"));
+
     code(&lahar(here.path(), &["report", "r"]), 0);
     let page = std::fs::read_to_string(here.path().join("r/report.html")).unwrap();
     for part in [
@@ -776,6 +781,95 @@ fn a_finished_run_is_drawn_and_told_of() {
     assert!(errors(&output).contains("--format npz"));
     // There is still something to tell.
     code(&lahar(here.path(), &["report", "bare"]), 0);
+}
+
+/// A run is drawn by the window's renderer where there is an adapter, and by the processor where there is none: the same
+/// water in the same place, on pictures of one size.
+#[test]
+fn the_window_s_renderer_and_the_processor_draw_the_same_water() {
+    /// A backend that this system has not got.
+    const NONE: &str = if cfg!(target_os = "macos") {
+        "dx12"
+    } else {
+        "metal"
+    };
+    let here = here();
+    for (name, scene) in [("flat", "dam-break"), ("solid", "dam-break-3d")] {
+        let coarse = [
+            "run",
+            scene,
+            "--set",
+            "dx=0.1",
+            "--frames=1",
+            "--format=npz",
+        ];
+        code(
+            &lahar(here.path(), &[&coarse[..], &["-o", name]].concat()),
+            0,
+        );
+        let draw = |renderer: &str, words: &[&str], backend: Option<&str>| {
+            let mut command = program(here.path());
+            command.args(["render", name, "--frames=1", "--size=96x64", "-o", renderer]);
+            command.args(["--renderer", renderer]).args(words);
+            command.envs(backend.map(|backend| ("WGPU_BACKEND", backend)));
+            let output = command.output().unwrap();
+            let path = here.path().join(renderer).join("000001.png");
+            (output, lahar_io::image::Picture::load_png(path))
+        };
+
+        let (output, picture) = draw("cpu", &[], None);
+        code(&output, 0);
+        assert!(errors(&output).contains("pictures by the processor\n"));
+        let by_processor = picture.unwrap();
+
+        let (output, _) = draw("gpu", &[], Some(NONE));
+        code(&output, 1);
+        assert!(
+            errors(&output).contains("--renderer gpu: "),
+            "{}",
+            errors(&output)
+        );
+        let (output, picture) = draw("auto", &[], Some(NONE));
+        code(&output, 0);
+        assert!(errors(&output).contains("pictures by the processor: "));
+        assert_eq!(picture.unwrap(), by_processor);
+
+        let (output, picture) = draw("auto", &[], None);
+        code(&output, 0);
+        if !errors(&output).contains("pictures by the window's renderer on ") {
+            continue;
+        }
+        let by_window = picture.unwrap();
+        let size = |picture: &lahar_io::image::Picture| (picture.width, picture.height);
+        assert_eq!(size(&by_window), size(&by_processor));
+        let water = |picture: &lahar_io::image::Picture| {
+            let (mut count, mut sums) = (0.0, [0.0; 2]);
+            for (at, pixel) in picture.rgb.as_chunks::<3>().0.iter().enumerate() {
+                if pixel[2] > 0x80 {
+                    let (row, column) = (at / picture.width as usize, at % picture.width as usize);
+                    count += 1.0;
+                    sums[0] += column as f64;
+                    sums[1] += row as f64;
+                }
+            }
+            (count, sums.map(|sum| sum / count))
+        };
+        let ((area, [x, y]), (window_area, [window_x, window_y])) =
+            (water(&by_processor), water(&by_window));
+        let ratio = window_area / area;
+        assert!((0.6..1.3).contains(&ratio), "{scene}: {window_area} {area}");
+        assert!(
+            (x - window_x).abs() < 5.0 && (y - window_y).abs() < 5.0,
+            "{scene}"
+        );
+
+        // Colours by body and by number, none of them the material's.
+        for by in ["body", "speed"] {
+            let (output, picture) = draw("auto", &["--color-by", by], None);
+            code(&output, 0);
+            assert_ne!(picture.unwrap(), by_window, "{by}");
+        }
+    }
 }
 
 #[cfg(feature = "mesh")]

@@ -52,16 +52,21 @@ impl Canvas {
         }
     }
 
-    /// Draws the picture onto its texture, if it is not there already.
+    /// The texture with the picture; `None` before the first.
+    pub(super) fn texture(&self) -> Option<&wgpu::Texture> {
+        self.target.as_ref().map(|target| target.colour.texture())
+    }
+
+    /// Draws the picture onto its texture, of `samples` × `samples` texels a pixel, if it is not there already.
     pub(super) fn draw(
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
         encoder: &mut wgpu::CommandEncoder,
         pipelines: &Pipelines,
-        picture: &Picture,
+        (picture, samples): (&Picture, u32),
     ) {
-        let size = picture.view.pixels.map(|p| (p as u32).max(1));
+        let size = picture.view.pixels.map(|p| (p as u32).max(1) * samples);
         let drawn = self.drawn.take();
         let same_sprites =
             (drawn.as_ref()).is_some_and(|d| Arc::ptr_eq(&d.sprites, &picture.sprites));
@@ -158,7 +163,7 @@ fn make_target(device: &wgpu::Device, pipelines: &Pipelines, size: [u32; 2]) -> 
     let colour = texture(
         "picture",
         COLOUR,
-        attachment | wgpu::TextureUsages::TEXTURE_BINDING,
+        attachment | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
     );
     let shown = device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("show"),

@@ -6,9 +6,10 @@
 //! ```
 //!
 //! A picture has a texture of its own, because egui's pass has no depth and is drawn anew for every
-//! movement of the mouse, when no particle has moved.
+//! movement of the mouse, when no particle has moved. [`Offscreen`] has the texture and no window.
 
 mod canvas;
+mod offscreen;
 mod pipelines;
 mod texels;
 
@@ -20,8 +21,9 @@ use eframe::egui_wgpu::{
     self, CallbackResources, CallbackTrait, RenderState, ScreenDescriptor, wgpu,
 };
 
-use crate::camera::M4;
+use crate::camera::{Camera, M4, V3};
 use canvas::Canvas;
+pub(crate) use offscreen::Offscreen;
 use pipelines::Pipelines;
 
 /// Particles as the shader takes them, one after the other.
@@ -61,6 +63,26 @@ pub struct View {
     pub radius: f32,
     /// Uniforms come in multiples of 16 bytes.
     pub unused: f32,
+}
+
+impl View {
+    /// What `camera` sees of a scene drawn less `origin` \[m\], on so many pixels that show `aspect` =
+    /// width/height; `radius` of a particle in parts of its spacing.
+    pub(crate) fn new(
+        camera: &Camera,
+        origin: V3,
+        aspect: f64,
+        pixels: [f32; 2],
+        radius: f32,
+    ) -> Self {
+        Self {
+            view: camera.view(origin),
+            projection: camera.projection(aspect),
+            pixels,
+            radius,
+            unused: 0.0,
+        }
+    }
 }
 
 /// All that is drawn at once.
@@ -120,7 +142,7 @@ impl CallbackTrait for Picture {
             while canvases.len() <= self.slot {
                 canvases.push(Canvas::new(device, pipelines));
             }
-            canvases[self.slot].draw(device, queue, encoder, pipelines, self);
+            canvases[self.slot].draw(device, queue, encoder, pipelines, (self, 1));
         }
         vec![]
     }

@@ -22,6 +22,11 @@ pub(super) struct Texels {
 }
 
 impl Texels {
+    /// How many particles textures of this device take.
+    pub(super) fn most(device: &wgpu::Device) -> usize {
+        WIDTH as usize * device.limits().max_texture_dimension_2d as usize
+    }
+
     /// Room for `particles` of them, or as many as a texture of this device takes.
     pub(super) fn new(
         device: &wgpu::Device,

@@ -114,6 +114,7 @@ fn space_pauses_period_steps_plus_and_minus_change_speed() {
 fn c_goes_through_the_colours_and_asks_for_their_fields() {
     let mut harness = harness("dam-break");
     for by in [
+        ColourBy::Body,
         ColourBy::Speed,
         ColourBy::Pressure,
         ColourBy::Density,

@@ -67,6 +67,7 @@ impl SceneSource for Blocks {
                 colour: None,
             }],
             body_swatches: vec![0],
+            bodies: vec![("block".into(), [0x06, 0x85, 0x87])],
             angle: Angle::default(),
             controls: if name == "pushed" {
                 Controls {

@@ -88,7 +88,7 @@ impl Drawn {
                 Colouring::Body => index(Field::Body)
                     .iter()
                     .map(|&body| {
-                        let other = palette::BODIES[body as usize % palette::BODIES.len()];
+                        let other = palette::body_colour(body as usize);
                         of_body(body).map_or_else(|| palette::linear(other), |[base, _]| base)
                     })
                     .collect(),

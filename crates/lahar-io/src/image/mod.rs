@@ -28,9 +28,10 @@ use lahar::{Collider, Field, Simulate, Snapshot};
 pub use beside::beside;
 pub use camera::Camera;
 pub use film::Film;
-pub use mp4::Mp4;
+pub use mp4::{Mp4, Mp4Maker};
 pub use palette::{
-    BACKGROUND, COLLIDER, Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, model_colours,
+    BACKGROUND, COLLIDER, Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, body_colour,
+    model_colours,
 };
 
 /// The fields that a picture is drawn from; those that a snapshot lacks are done without.
@@ -288,6 +289,16 @@ pub struct Renderer {
     view: View,
 }
 
+/// Samples of a picture that there is memory for: 16 bytes each.
+const MOST_SAMPLES: u64 = 1 << 28;
+
+/// Samples a pixel and axis: large pictures have fewer.
+fn affordable(style: &Style) -> u32 {
+    let pixels = u64::from(style.width) * u64::from(style.height);
+    let most = (MOST_SAMPLES / pixels.max(1)).isqrt() as u32;
+    style.samples.clamp(1, 8).min(most.max(1))
+}
+
 #[derive(Clone, Debug)]
 enum View {
     Plane(plane::Plane),
@@ -300,7 +311,7 @@ impl Renderer {
         let style = Style {
             width: style.width.max(16),
             height: style.height.max(16),
-            samples: style.samples.clamp(1, 8),
+            samples: affordable(&style),
             ..style
         };
         let view = if scenery.dimension == 2 {
@@ -331,6 +342,14 @@ impl Renderer {
             plane.frame(&self.style, [center[0], center[1]], height);
         }
         self
+    }
+
+    /// Width and height of the pictures \[pixels\].
+    pub fn size(&self) -> [u32; 2] {
+        match &self.view {
+            View::Plane(plane) => plane.size(),
+            View::Space(space) => space.size(),
+        }
     }
 
     /// Draws one moment.
@@ -433,6 +452,20 @@ mod tests {
             assert!((0.15..0.4).contains(&early), "{dimension}D: {early}");
             assert!((0.6..0.85).contains(&late), "{dimension}D: {late}");
         }
+    }
+
+    #[test]
+    fn large_pictures_have_fewer_samples() {
+        let samples = |width, height| {
+            affordable(&Style {
+                width,
+                height,
+                ..Style::default()
+            })
+        };
+        assert_eq!(samples(1920, 1080), 3);
+        assert_eq!(samples(8192, 8192), 2);
+        assert_eq!(samples(16384, 16384), 1);
     }
 
     #[test]

@@ -29,7 +29,7 @@ const GRAINS: [Colour; 3] = [hex(0xEE_EEF0), hex(0xD8_B982), hex(0xA9_8467)];
 /// Of colliders that have none of their own.
 pub const COLLIDER: Colour = hex(0x8A_98_A3);
 
-pub(super) const BODIES: [Colour; 8] = [
+const BODIES: [Colour; 8] = [
     hex(0x06_8587),
     hex(0xED_553B),
     hex(0xEE_EEF0),
@@ -39,6 +39,11 @@ pub(super) const BODIES: [Colour; 8] = [
     hex(0x5B_C26A),
     hex(0xD9_7AA6),
 ];
+
+/// The colour of a body that has none of its own, by its number.
+pub fn body_colour(number: usize) -> Colour {
+    BODIES[number % BODIES.len()]
+}
 
 /// A colour a material, by the names of their models: water teal, jelly red, snow white.
 pub fn model_colours(models: &[&str]) -> Vec<Colour> {

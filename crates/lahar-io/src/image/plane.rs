@@ -54,6 +54,10 @@ impl Plane {
         }
     }
 
+    pub(super) fn size(&self) -> [u32; 2] {
+        [self.width as u32, self.height as u32]
+    }
+
     /// Shows `height` \[m\] around `center` \[m\], on the whole of the picture.
     pub(super) fn frame(&mut self, style: &Style, center: [f64; 2], height: f64) {
         let pixels = f64::from(style.height) / height;

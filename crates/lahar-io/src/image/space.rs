@@ -76,6 +76,10 @@ impl Space {
         }
     }
 
+    pub(super) fn size(&self) -> [u32; 2] {
+        [self.width as u32, self.height as u32]
+    }
+
     pub(super) fn render(&self, particles: &Drawn, solids: &[Solid]) -> Picture {
         let eye = Eye::new(
             &self.camera,

@@ -1,0 +1,105 @@
+//! A film as MP4 (H.264): by an ffmpeg that is installed, or by an encoder that this program was built with (feature
+//! `mp4`).
+
+mod ffmpeg;
+#[cfg(feature = "mp4")]
+mod openh264;
+
+use std::fmt;
+use std::io;
+use std::path::Path;
+
+use super::Picture;
+use ffmpeg::Ffmpeg;
+
+/// What makes MP4.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Mp4Maker {
+    /// An ffmpeg on the path, by the first line that it says of itself.
+    Ffmpeg(String),
+    /// The encoder in this program: no larger than 3840 × 2160 pixels.
+    #[cfg(feature = "mp4")]
+    OpenH264,
+}
+
+impl fmt::Display for Mp4Maker {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ffmpeg(version) => f.write_str(version),
+            #[cfg(feature = "mp4")]
+            Self::OpenH264 => f.write_str("lahar with OpenH264"),
+        }
+    }
+}
+
+impl Mp4Maker {
+    /// What there is on this machine, ffmpeg first: its files are smaller. `None`: nothing.
+    pub fn find() -> Option<Self> {
+        let installed = Ffmpeg::version().map(Self::Ffmpeg);
+        #[cfg(feature = "mp4")]
+        let installed = installed.or(Some(Self::OpenH264));
+        installed
+    }
+
+    /// Begins the film at `path`, of `rate` pictures a second, all of the size of `first`, which is not yet in it.
+    ///
+    /// # Errors
+    /// If the file cannot be written, or ffmpeg does not start.
+    pub fn start(&self, path: &Path, rate: f64, first: &Picture) -> io::Result<Mp4> {
+        let encoder = match self {
+            Self::Ffmpeg(_) => Encoder::Ffmpeg(Ffmpeg::start(path, rate, first)?),
+            #[cfg(feature = "mp4")]
+            Self::OpenH264 => {
+                Encoder::OpenH264(Box::new(openh264::OpenH264::start(path, rate, first)?))
+            }
+        };
+        Ok(Mp4 {
+            encoder,
+            size: (first.width, first.height),
+        })
+    }
+}
+
+/// A film that is being made.
+pub struct Mp4 {
+    encoder: Encoder,
+    size: (u32, u32),
+}
+
+enum Encoder {
+    Ffmpeg(Ffmpeg),
+    #[cfg(feature = "mp4")]
+    OpenH264(Box<openh264::OpenH264>),
+}
+
+impl Mp4 {
+    /// Adds a picture.
+    ///
+    /// # Errors
+    /// If its size is another, or the encoder has failed; then [`Self::finish`] says why.
+    pub fn push(&mut self, picture: &Picture) -> io::Result<()> {
+        if (picture.width, picture.height) != self.size {
+            return Err(io::Error::new(
+                io::ErrorKind::InvalidInput,
+                "pictures of a film have one size",
+            ));
+        }
+        match &mut self.encoder {
+            Encoder::Ffmpeg(ffmpeg) => ffmpeg.push(picture),
+            #[cfg(feature = "mp4")]
+            Encoder::OpenH264(encoder) => encoder.push(picture),
+        }
+    }
+
+    /// Ends the film and waits until it is written.
+    ///
+    /// # Errors
+    /// What the encoder says.
+    pub fn finish(self) -> io::Result<()> {
+        match self.encoder {
+            Encoder::Ffmpeg(ffmpeg) => ffmpeg.finish(),
+            #[cfg(feature = "mp4")]
+            Encoder::OpenH264(encoder) => encoder.finish(),
+        }
+    }
+}
