@@ -18,6 +18,10 @@ pub(crate) enum Painter {
 
 /// A run and how it is to be drawn.
 pub(crate) struct Subject<'a> {
+    #[cfg_attr(
+        not(feature = "window"),
+        expect(dead_code, reason = "the processor draws from the scene alone")
+    )]
     pub(crate) recording: &'a Recording,
     /// With what options say of its camera.
     pub(crate) scene: &'a Scene,
