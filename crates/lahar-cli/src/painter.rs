@@ -38,7 +38,7 @@ impl Painter {
             args::Renderer::Cpu => Ok(Self::cpu(subject, None)),
             args::Renderer::Gpu => Self::gpu(subject).map_err(|why| {
                 CliError::Machine(format!(
-                    "--renderer gpu: {why}; `--renderer cpu` needs none"
+                    "--renderer gpu: {why}; `--renderer cpu` needs no adapter"
                 ))
             }),
             args::Renderer::Auto => {
