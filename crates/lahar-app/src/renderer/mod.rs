@@ -6,7 +6,7 @@
 //! ```
 //!
 //! A picture has a texture of its own, because egui's pass has no depth and is drawn anew for every
-//! movement of the mouse, when no particle has moved. [`Offscreen`] has the texture and no window.
+//! movement of the mouse, when no particle has moved. Without a window there is only the texture: offscreen.rs.
 
 mod canvas;
 mod offscreen;
