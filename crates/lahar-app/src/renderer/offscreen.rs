@@ -61,7 +61,7 @@ fn adapter() -> Result<(wgpu::Adapter, String), String> {
         });
         pollster::block_on(instance.request_adapter(&options)).ok()
     };
-    // GL's libraries complain on standard error where there is no display: they are not asked without need.
+    // GL is asked where there is nothing better only.
     let gl = wgpu::Backends::GL;
     let adapter = (find(wanted.backends - gl))
         .or_else(|| find(wanted.backends & gl))
