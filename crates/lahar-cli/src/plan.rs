@@ -231,26 +231,18 @@ impl Plan {
 
     /// The fields that frames are made of.
     pub(crate) fn fields(&self) -> Vec<Field> {
-        let chosen = |info: &particles::FieldInfo| {
-            let particles = &self.outputs.formats.particles;
-            let chosen = self
-                .scene
-                .output
-                .fields
-                .as_ref()
-                .is_none_or(|names| names.iter().any(|name| name == info.name));
-            let placed = info.field == Field::Position;
-            let in_files = !particles.is_empty() && chosen
-                || placed && particles.iter().any(|format| format.needs_positions());
-            let drawn = (self.outputs.formats.png > 0 || self.outputs.formats.gif)
-                && image::FIELDS.contains(&info.field);
-            in_files || drawn
+        let particles = &self.outputs.formats.particles;
+        let chosen = self.scene.output_fields();
+        let pictures = self.outputs.formats.png > 0 || self.outputs.formats.gif;
+        let wanted = |field: Field| {
+            let in_files = !particles.is_empty() && chosen.contains(&field);
+            let placed =
+                field == Field::Position && particles.iter().any(|format| format.needs_positions());
+            let drawn = pictures && image::FIELDS.contains(&field);
+            in_files || placed || drawn
         };
-        particles::FIELDS
-            .iter()
-            .filter(|info| chosen(info))
-            .map(|info| info.field)
-            .collect()
+        let fields = particles::FIELDS.iter().map(|info| info.field);
+        fields.filter(|field| wanted(*field)).collect()
     }
 
     /// Pictures, if wanted.

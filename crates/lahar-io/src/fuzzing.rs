@@ -1,12 +1,14 @@
 //! What users hand in, from bytes: every reader as the targets in fuzz/ call it. Nothing here returns anything:
 //! all that is looked for are panics, hangs and memory.
 
-use std::cell::LazyCell;
+use std::cell::RefCell;
 use std::io::Cursor;
 
 use lahar::checkpoint::Values;
-use lahar::{Checkpoint, Isa};
+use lahar::particles::FIELDS;
+use lahar::{Checkpoint, Isa, Simulate};
 
+use crate::checkpoint::Sums;
 use crate::expression::Expression;
 use crate::scene::{Limits, Scene};
 use crate::{checkpoint, mesh_file, npz, particle_list, ply};
@@ -76,9 +78,19 @@ pub fn mesh(bytes: &[u8], ending: &str) {
     }
 }
 
-/// A checkpoint's file.
+/// A checkpoint's file. Its sums are taken for right, and its length: else nearly all changes would end there.
+/// What can be read goes to a simulation.
 pub fn checkpoint(bytes: &[u8]) {
     drop(checkpoint::read(bytes, bytes.len() as u64));
+    let mut bytes = bytes.to_vec();
+    let length = (bytes.len() as u64).to_le_bytes();
+    if let Some(told) = bytes.get_mut(checkpoint::LENGTH_AT) {
+        told.copy_from_slice(&length);
+    }
+    let read = checkpoint::read_with(&*bytes, bytes.len() as u64, Sums::Ignored);
+    if let Ok((_, checkpoint)) = read {
+        go_on_from(checkpoint);
+    }
 }
 
 /// A scene of some particles, a wall, a force by where they started and a gauge.
@@ -106,39 +118,25 @@ name = "wall"
 pressure = { at = [1.0, 0.1] }
 "#;
 
-/// Arrays of a checkpoint: `bytes` are changes to a good one (which array, which number, what it becomes). A
-/// simulation that takes it must be able to take substeps, too.
-pub fn state(bytes: &[u8]) {
-    thread_local! {
-        static GOOD: LazyCell<Option<(Scene, Checkpoint)>> = const { LazyCell::new(|| {
-            let scene = Scene::parse(SMALL, "small.toml", &[]).ok()?;
-            let mut simulation = scene.build(Isa::Portable).ok()?.simulation;
-            simulation.advance_to(0.05).ok()?;
-            let checkpoint = simulation.checkpoint();
-            Some((scene, checkpoint))
-        }) };
-    }
-    GOOD.with(|good| {
-        let (scene, checkpoint) = good.as_ref().expect("the small scene runs");
-        let mut checkpoint = checkpoint.clone();
-        for change in bytes.as_chunks::<12>().0.iter().take(8) {
-            let [array, number, shift, kind, value @ ..] = *change;
-            let arrays = checkpoint.arrays.len();
-            let array = &mut checkpoint.arrays[usize::from(array) % arrays];
-            let length = array.values.len().max(1);
-            let at = (usize::from(number) << (shift % 4)) % length;
-            let bits = u64::from_le_bytes(value);
-            match kind % 4 {
-                0 => array.shape = vec![usize::from(number), bits as usize],
-                1 => truncate(&mut array.values, at),
-                _ => set(&mut array.values, at, bits),
-            }
-        }
-        let mut simulation = scene
-            .build(Isa::Portable)
-            .expect("the small scene is sound")
-            .simulation;
+thread_local! {
+    /// The small scene after some substeps, and its checkpoint.
+    static GOOD: (RefCell<Box<dyn Simulate>>, Checkpoint) = {
+        let scene = Scene::parse(SMALL, "small.toml", &[]).expect("the small scene is sound");
+        let mut simulation = (scene.build(Isa::Portable)).expect("it can be built").simulation;
+        simulation.advance_to(0.05).expect("it runs");
+        let checkpoint = simulation.checkpoint();
+        (RefCell::new(simulation), checkpoint)
+    };
+}
+
+/// A simulation that takes this checkpoint must be able to tell of itself and to take substeps, too.
+fn go_on_from(checkpoint: Checkpoint) {
+    GOOD.with(|(simulation, _)| {
+        let mut simulation = simulation.borrow_mut();
         if simulation.resume(checkpoint).is_ok() {
+            let fields = FIELDS.iter().map(|info| info.field);
+            drop(simulation.snapshot(&fields.collect::<Vec<_>>()));
+            drop(simulation.diagnostics());
             for _ in 0..3 {
                 if simulation.substep().is_err() {
                     break;
@@ -146,6 +144,25 @@ pub fn state(bytes: &[u8]) {
             }
         }
     });
+}
+
+/// Arrays of a checkpoint: `bytes` are changes to a good one (which array, which number, what it becomes).
+pub fn state(bytes: &[u8]) {
+    let mut checkpoint = GOOD.with(|(_, checkpoint)| checkpoint.clone());
+    for change in bytes.as_chunks::<12>().0.iter().take(8) {
+        let [array, number, shift, kind, value @ ..] = *change;
+        let arrays = checkpoint.arrays.len();
+        let array = &mut checkpoint.arrays[usize::from(array) % arrays];
+        let length = array.values.len().max(1);
+        let at = (usize::from(number) << (shift % 4)) % length;
+        let bits = u64::from_le_bytes(value);
+        match kind % 4 {
+            0 => array.shape = vec![usize::from(number), bits as usize],
+            1 => truncate(&mut array.values, at),
+            _ => set(&mut array.values, at, bits),
+        }
+    }
+    go_on_from(checkpoint);
 }
 
 fn truncate(values: &mut Values, length: usize) {

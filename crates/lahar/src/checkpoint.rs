@@ -315,6 +315,10 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         if let Some(pair) = ids.windows(2).find(|pair| pair[0] == pair[1]) {
             return wrong("id", format!("there are two particles {}", pair[0]));
         }
+        // Who has an id and is not here has left.
+        if state.escaped.count.checked_add(ids.len() as u64) != Some(u64::from(next_id)) {
+            return wrong("next_id", "is not the number of particles there and gone");
+        }
         let starts = match self.starts {
             Some(_) => {
                 let (shape, values) = arrays.f64s("starts")?;

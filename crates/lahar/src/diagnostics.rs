@@ -1,9 +1,10 @@
 //! What the whole of the particles comes to: one row of diagnostics.csv. In f64, in a fixed order.
 
 use crate::instance::Instance;
+use crate::parallel;
 use crate::setup::Transfer;
 use crate::simulation::{Simulation, three};
-use crate::store::{Layout, PerParticle};
+use crate::store::{Group, Layout, PerParticle, Run};
 
 /// Totals at one moment. Vectors have three components; in 2D the third is zero, and angular
 /// momentum is its third component.
@@ -67,56 +68,115 @@ pub(crate) fn measure<T: Instance<D>, const D: usize>(
         }
         _ => 0.0,
     };
-    let gravity = three(simulation.setup.gravity);
+    let mut total = Totals::default();
     for group in &simulation.groups {
         row.particles += group.len() as u64;
         row.mass += match &group.mass {
             PerParticle::Uniform(mass) => mass.to_f64() * group.len() as f64,
             PerParticle::Each(_) => 0.0,
         };
-        let mut each_mass = 0.0;
-        let at = |column: usize, index: usize| group.columns[column][index].to_f64();
-        let mut strain = vec![0.0; group.law.strain_columns()];
-        for run in &group.runs {
-            for p in run.rows() {
-                let x = three(simulation.position(group, run.block, p));
-                let v = three(core::array::from_fn::<f64, D, _>(|axis| {
-                    at(Layout::velocity(D) + axis, p)
-                }));
-                let c = |i: usize, j: usize| {
-                    if i < D && j < D {
-                        at(Layout::affine(D) + j * D + i, p)
-                    } else {
-                        0.0
-                    }
-                };
-                let m = group.mass.get(p).to_f64();
-                if matches!(group.mass, PerParticle::Each(_)) {
-                    each_mass += m;
-                }
-                for axis in 0..3 {
-                    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
-                    row.momentum[axis] += m * v[axis];
-                    row.angular_momentum[axis] +=
-                        m * (x[i] * v[j] - x[j] * v[i] + spin * (c(j, i) - c(i, j)));
-                    row.potential_energy -= m * gravity[axis] * x[axis];
-                }
-                let speed_squared = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-                row.kinetic_energy += 0.5 * m * speed_squared;
-                row.max_speed = row.max_speed.max(speed_squared);
-                for (column, value) in strain.iter_mut().enumerate() {
-                    *value = at(Layout::strain(D) + column, p);
-                }
-                let state = group.law.describe(&strain, [[0.0; D]; D]);
-                let volume0 = group.volume0.get(p).to_f64();
-                row.elastic_energy += volume0 * state.energy_density;
-                row.particle_volume += volume0 * state.jacobian;
+        // Each block's own totals, then those in order: sums do not depend on the number of threads.
+        let mut of_blocks = vec![Totals::default(); group.runs.len()];
+        let grain = parallel::grain(of_blocks.len(), SMALLEST_PIECE);
+        parallel::for_chunks(&mut of_blocks, 1, 0, grain, &|first, piece| {
+            let mut strain = vec![0.0; group.law.strain_columns()];
+            for (run, totals) in group.runs[first..].iter().zip(piece) {
+                *totals = Totals::of(simulation, group, run, spin, &mut strain);
             }
+        });
+        for block in &of_blocks {
+            total.add(block);
         }
-        row.mass += each_mass;
     }
-    row.max_speed = row.max_speed.sqrt();
+    row.mass += total.each_mass;
+    row.momentum = total.momentum;
+    row.angular_momentum = total.angular_momentum;
+    row.kinetic_energy = total.kinetic_energy;
+    row.elastic_energy = total.elastic_energy;
+    row.potential_energy = total.potential_energy;
+    row.max_speed = total.max_speed_squared.sqrt();
+    row.particle_volume = total.particle_volume;
     row
+}
+
+/// Blocks that are worth a piece of parallel work of their own.
+const SMALLEST_PIECE: usize = 16;
+
+/// What particles come to; the fields of [`Diagnostics`] that are sums over them.
+#[derive(Clone, Copy, Default)]
+struct Totals {
+    /// Mass of particles that have one each.
+    each_mass: f64,
+    momentum: [f64; 3],
+    angular_momentum: [f64; 3],
+    kinetic_energy: f64,
+    elastic_energy: f64,
+    potential_energy: f64,
+    max_speed_squared: f64,
+    particle_volume: f64,
+}
+
+impl Totals {
+    /// Of one block's particles; `strain` is room for one's.
+    fn of<T: Instance<D>, const D: usize>(
+        simulation: &Simulation<T, D>,
+        group: &Group<T, D>,
+        run: &Run<D>,
+        spin: f64,
+        strain: &mut [f64],
+    ) -> Self {
+        let gravity = three(simulation.setup.gravity);
+        let at = |column: usize, p: usize| group.columns[column][p].to_f64();
+        let mut totals = Self::default();
+        for p in run.rows() {
+            let x = three(simulation.position(group, run.block, p));
+            let v = three(core::array::from_fn::<f64, D, _>(|axis| {
+                at(Layout::velocity(D) + axis, p)
+            }));
+            let c = |i: usize, j: usize| {
+                if i < D && j < D {
+                    at(Layout::affine(D) + j * D + i, p)
+                } else {
+                    0.0
+                }
+            };
+            let m = group.mass.get(p).to_f64();
+            if matches!(group.mass, PerParticle::Each(_)) {
+                totals.each_mass += m;
+            }
+            for axis in 0..3 {
+                let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+                totals.momentum[axis] += m * v[axis];
+                totals.angular_momentum[axis] +=
+                    m * (x[i] * v[j] - x[j] * v[i] + spin * (c(j, i) - c(i, j)));
+                totals.potential_energy -= m * gravity[axis] * x[axis];
+            }
+            let speed_squared = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+            totals.kinetic_energy += 0.5 * m * speed_squared;
+            totals.max_speed_squared = totals.max_speed_squared.max(speed_squared);
+            for (column, value) in strain.iter_mut().enumerate() {
+                *value = at(Layout::strain(D) + column, p);
+            }
+            let stored = group.law.energy(strain);
+            let volume0 = group.volume0.get(p).to_f64();
+            totals.elastic_energy += volume0 * stored.energy_density;
+            totals.particle_volume += volume0 * stored.jacobian;
+        }
+        totals
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.each_mass += other.each_mass;
+        for axis in 0..3 {
+            self.momentum[axis] += other.momentum[axis];
+            self.angular_momentum[axis] += other.angular_momentum[axis];
+        }
+        self.kinetic_energy += other.kinetic_energy;
+        self.elastic_energy += other.elastic_energy;
+        self.potential_energy += other.potential_energy;
+        self.max_speed_squared = self.max_speed_squared.max(other.max_speed_squared);
+        self.particle_volume += other.particle_volume;
+    }
 }
 
 /// Σ over nodes of min(1, rest volume at the node / dxᴰ) dxᴰ: the space that is filled.

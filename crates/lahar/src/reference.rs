@@ -137,12 +137,12 @@ impl<const D: usize> Reference<D> {
             uncorrected: 0.0,
             setup: setup.clone(),
             origin: Vector(origin),
-            walls,
             colliders: setup
                 .colliders
                 .iter()
-                .map(|collider| collider.in_units(setup.dx, origin))
+                .map(|collider| collider.in_units(setup.dx, origin).rooted(&walls))
                 .collect(),
+            walls,
             particles,
             escaped: Vec::new(),
         };

@@ -301,10 +301,10 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             .map(|(law, m)| Group::new(law, m.density))
             .collect::<Vec<_>>();
         let origin = setup.domain.as_ref().map_or([0.0; D], |domain| domain.min);
-        let in_cells = |collider: &Collider<D>| collider.in_units(setup.dx, origin);
+        let in_cells = |collider: &Collider<D>| collider.in_units(setup.dx, origin).rooted(&walls);
         let mut simulation = Self {
-            walls,
             colliders: setup.colliders.iter().map(in_cells).collect(),
+            walls,
             origin,
             grid: Grid::new(scheme),
             scheme,

@@ -16,6 +16,9 @@ const MOST_PATIENCE: u32 = 12;
 /// More parts of a substep than any number of frames that failed asks for.
 const MOST_PARTS: f64 = 9007199254740992.0;
 
+/// Substeps are counted exactly as real numbers up to this; no run comes near it.
+const MOST_SUBSTEPS: u64 = 1 << f64::MANTISSA_DIGITS;
+
 /// Substeps left to a moment that are still evened out, so that the last is not a splinter.
 const EVEN_OUT: f64 = 2.0;
 
@@ -140,6 +143,8 @@ impl StepControl {
             && time.is_finite()
             && changed.is_finite()
             && changed_substeps <= substeps
+            && substeps <= MOST_SUBSTEPS
+            && clean_frames <= u64::from(CLEAN_FRAMES << MOST_PATIENCE)
             && (1.0..=MOST_PARTS).contains(&whole_parts)
             && (whole_parts as u64).is_power_of_two();
         sound.then_some(())?;

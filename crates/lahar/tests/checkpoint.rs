@@ -332,6 +332,15 @@ fn values_out_of_place_are_refused() {
     refused("counts", &|values| {
         *values = Values::U64(vec![0, 99, 0, 0, 0])
     });
+    refused("counts", &|values| {
+        *values = Values::U64(vec![u64::MAX, 0, 0, 0, 0]) // the next substep would have no number
+    });
+    refused("counts", &|values| {
+        *values = Values::U64(vec![0, 0, u64::from(u32::MAX), 0, 0])
+    });
+    refused("next_id", &|values| {
+        *values = Values::U32(vec![u32::MAX]) // a snapshot would take 32 GB
+    });
     refused("materials.0.id", &|values| {
         *values = Values::U32(vec![u32::MAX])
     });

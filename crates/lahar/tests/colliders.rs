@@ -424,3 +424,93 @@ fn a_fast_piston_passes_no_particle() {
         assert!(x[1] > 1.1 - 1e-3, "left behind at {x:?}");
     }
 }
+
+/// Fluid that runs along the floor against an obstacle: where it is after .25 s, and what the obstacle has taken.
+fn stream<const D: usize>(solid: Solid<D>, motion: Motion<D>) -> (Vec<[f64; D]>, [f64; 3])
+where
+    f32: Instance<D>,
+{
+    let (dx, sound_speed) = (1.0 / 32.0, 20.0);
+    let mut setup = Setup {
+        gravity: core::array::from_fn(|i| if i == 1 { -G } else { 0.0 }),
+        domain: Some(Domain {
+            min: [0.0; D],
+            max: core::array::from_fn(|i| [1.0, 0.75, 0.5][i]),
+            sides: [both(SEPARATE); D],
+            style: WallStyle::Plane,
+        }),
+        ..Setup::new(dx, vec![fluid(sound_speed)])
+    };
+    setup.colliders = vec![Collider {
+        motion,
+        ..Collider::still("obstacle", vec![solid], SEPARATE)
+    }];
+    let cells = [12, 6, 16];
+    let mut batch = ParticleBatch::default();
+    let count: usize = cells[..D].iter().map(|n| 2 * n).product();
+    for index in 0..count {
+        let mut rest = index;
+        batch.position.push(core::array::from_fn(|i| {
+            let place = rest % (2 * cells[i]);
+            rest /= 2 * cells[i];
+            (place as f64 + 0.5) * dx / 2.0
+        }));
+    }
+    batch.volume = vec![(dx / 2.0).powi(D as i32)];
+    batch.velocity = vec![core::array::from_fn(|i| if i == 0 { 2.0 } else { 0.0 })];
+    let mut simulation = Simulation::<f32, D>::new(setup, &[batch]).unwrap();
+    simulation.advance_to(0.25).unwrap();
+    let taken = simulation.boundary_impulses().pop().unwrap();
+    assert!(taken.impulse[0] > 0.0, "the stream has come to it");
+    (field::<D>(&simulation, Field::Position), taken.impulse)
+}
+
+/// What stands on the floor acts as if it went on below: to the bit as the same that begins 5 cells lower.
+#[test]
+fn an_obstacle_that_stands_on_the_floor_has_no_face_there() {
+    let below = -5.0 / 32.0;
+    let block = |bottom: f64| Solid::Box {
+        center: [0.5625, 0.5 * (0.25 + bottom)],
+        half: [0.0625, 0.5 * (0.25 - bottom)],
+        axes: [[1.0, 0.0], [0.0, 1.0]],
+    };
+    let steady = |velocity| Motion::Steady {
+        velocity,
+        spin: [0.0; 3],
+    };
+    for motion in [Motion::Still, steady([-0.25, 0.0])] {
+        let lower = stream(block(below), motion.clone());
+        assert_eq!(stream(block(0.0), motion.clone()), lower, "{motion:?}");
+        assert_eq!(stream(block(-0.5 / 32.0), motion), lower);
+    }
+    let wedge = |bottom: f64| Solid::Polygon {
+        points: vec![
+            [0.5, bottom],
+            [0.6875, bottom],
+            [0.6875, 0.0],
+            [0.625, 0.25],
+            [0.5, 0.0],
+        ],
+    };
+    let on_floor = Solid::Polygon {
+        points: vec![[0.6875, 0.0], [0.625, 0.25], [0.5, 0.0]],
+    };
+    assert_eq!(
+        stream(on_floor, Motion::Still),
+        stream(wedge(10.0 * below), Motion::Still)
+    );
+    let column = |bottom: f64| Solid::Rod {
+        from: [0.5625, bottom, 0.25],
+        to: [0.5625, 0.5, 0.25],
+        radius: 0.0625,
+        round: false,
+    };
+    assert_eq!(
+        stream(column(0.0), Motion::Still),
+        stream(column(below), Motion::Still)
+    );
+    // A gate that is lifted has a lower face.
+    let (_, standing) = stream(block(0.0), Motion::Still);
+    let (_, lifted) = stream(block(0.0), steady([0.0, 1.0]));
+    assert!(lifted[0] < 0.9 * standing[0], "{lifted:?} {standing:?}");
+}

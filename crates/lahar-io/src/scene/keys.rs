@@ -1844,8 +1844,8 @@ pub(crate) static OUTPUT: Section = Section {
             "fields",
             Kind::Fields,
             "",
-            Words("all that the particles have"),
-            "Fields in files of particles.",
+            Words("all that say something of the materials"),
+            "Fields in files of particles. `deformation_gradient` goes without saying where all materials remember J only (fluids, dust), `plastic_J` where none yields.",
         ),
         key(
             "every",

@@ -54,7 +54,8 @@ use crate::error::SceneError;
 use document::{Document, Span, json_table};
 pub use files::SceneFile;
 use files::{Files, Place, read_text};
-use lahar::{Isa, Simulate, Simulation, TimeStep};
+use lahar::particles::{FIELDS, FieldInfo};
+use lahar::{Field, Isa, Simulate, Simulation, TimeStep};
 use motion::InMotion;
 use plan::Plan;
 use read::Reader;
@@ -427,13 +428,27 @@ impl Scene {
         value
     }
 
-    /// A material as the simulator has it.
-    #[cfg(test)]
-    fn material(&self, index: usize) -> &lahar::Material {
+    /// The materials as the simulator has them.
+    fn simulated_materials(&self) -> &[lahar::Material] {
         match &self.plan {
-            AnyPlan::D2(plan) => &plan.materials[index],
-            AnyPlan::D3(plan) => &plan.materials[index],
+            AnyPlan::D2(plan) => &plan.materials,
+            AnyPlan::D3(plan) => &plan.materials,
         }
+    }
+
+    /// The fields in files of particles, in the order of [`FIELDS`]: those asked for, or else all that say
+    /// something of any of the materials.
+    pub fn output_fields(&self) -> Vec<Field> {
+        let written = |info: &&FieldInfo| match &self.output.fields {
+            Some(names) => names.iter().any(|name| name == info.name),
+            None => (self.simulated_materials().iter())
+                .any(|material| material.model.informs(info.field)),
+        };
+        FIELDS
+            .iter()
+            .filter(written)
+            .map(|info| info.field)
+            .collect()
     }
 
     /// How fast sound should be when gravity is changed while it runs.

@@ -127,7 +127,7 @@ mod tests {
             );
             let material = crate::scene::Scene::parse(&text, "a", &[])
                 .unwrap()
-                .material(0)
+                .simulated_materials()[0]
                 .clone();
             let theirs = lahar::material::preset(name, material.sound_speed()).unwrap();
             assert_eq!(material.density, theirs.density, "{name}");

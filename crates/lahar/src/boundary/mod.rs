@@ -4,6 +4,7 @@ pub(crate) mod collider;
 pub(crate) mod contact;
 pub(crate) mod impulse;
 pub(crate) mod pointer;
+mod rooted;
 mod solid;
 pub(crate) mod surface;
 pub(crate) mod walls;

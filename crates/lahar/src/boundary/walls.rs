@@ -1,6 +1,7 @@
 //! The domain's walls as the nodes see them.
 
 use super::impulse::{SIDES, Taken};
+use super::rooted::Side;
 use super::{Contact, Corners, Cushion, Domain, Sides, WallStyle};
 use crate::error::SetupError;
 use crate::math::{Scalar, Vector};
@@ -220,6 +221,24 @@ impl<const D: usize> Walls<D> {
             });
         }
         Ok(())
+    }
+
+    /// The sides of the domain where material ends.
+    pub(crate) fn ends(&self) -> impl Iterator<Item = Side> {
+        let planes = self.planes.iter().map(|plane| Side {
+            axis: plane.axis,
+            at: plane.node as f64,
+            out: -f64::from(plane.inward),
+        });
+        let of_axis = |axis: usize| {
+            let (low, high) = (self.low[axis], self.high[axis]);
+            let at = |end: End| end.node as f64;
+            let low = low.map(at).or(self.open[axis].0).map(|at| (at, -1.0));
+            let high = high.map(at).or(self.open[axis].1).map(|at| (at, 1.0));
+            let ends = low.into_iter().chain(high);
+            ends.map(move |(at, out)| Side { axis, at, out })
+        };
+        planes.chain((0..D).flat_map(of_axis))
     }
 
     /// Names of the domain's sides with walls, and their numbers.

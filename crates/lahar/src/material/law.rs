@@ -12,7 +12,7 @@ use crate::math::{Lanes, Matrix, Vector};
 use core::ops::Deref;
 use fearless_simd::{Level, Simd};
 
-/// The strain and velocity gradient of one particle, and what its law makes of it, in f64.
+/// What a law makes of the strain and velocity gradient of one particle, in f64.
 #[derive(Clone, Debug)]
 pub struct ParticleState<const D: usize> {
     /// J.
@@ -21,10 +21,17 @@ pub struct ParticleState<const D: usize> {
     pub deformation_gradient: [[f64; D]; D],
     /// J_P.
     pub plastic_jacobian: f64,
-    /// Φ \[Pa\].
-    pub energy_density: f64,
     /// −tr σ/d, σ the Cauchy stress \[Pa\].
     pub pressure: f64,
+}
+
+/// What one particle stores, in f64.
+#[derive(Clone, Copy, Debug)]
+pub struct ParticleEnergy {
+    /// J.
+    pub jacobian: f64,
+    /// Φ \[Pa\].
+    pub energy_density: f64,
 }
 
 /// An instruction set as laws get it.
@@ -84,6 +91,8 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
     fn start(&self, f: [[f64; D]; D], plastic_jacobian: f64) -> Vec<f64>;
     /// What the columns mean.
     fn describe(&self, strain: &[f64], velocity_gradient: [[f64; D]; D]) -> ParticleState<D>;
+    /// What they store.
+    fn energy(&self, strain: &[f64]) -> ParticleEnergy;
 }
 
 /// The law of a built-in model.
@@ -284,8 +293,15 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for 
                 core::array::from_fn(|j| h[(i, j)] + if i == j { 1.0 } else { 0.0 })
             }),
             plastic_jacobian: 1.0 + strain.plastic_jacobian_minus_one(),
-            energy_density: self.0.energy_density(strain),
             pressure: -tau.trace() / (D as f64 * jacobian),
+        }
+    }
+
+    fn energy(&self, strain: &[f64]) -> ParticleEnergy {
+        let strain = M::Strain::<f64>::read(|column| strain[column]);
+        ParticleEnergy {
+            jacobian: 1.0 + strain.jacobian_minus_one(),
+            energy_density: self.0.energy_density(strain),
         }
     }
 }

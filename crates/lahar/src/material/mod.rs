@@ -16,7 +16,7 @@ mod strain;
 
 pub use corotated::Corotated;
 pub use fluid::{Eos, Fluid, JacobianUpdate, SMALLEST_JACOBIAN, TORN, ViscousStress};
-pub use law::{IsaToken, Law, ParticleState, law};
+pub use law::{IsaToken, Law, ParticleEnergy, ParticleState, law};
 pub(crate) use law::{built_in, load_matrix, load_vector};
 pub use neo_hookean::{LOGARITHM_ENDS, NeoHookean};
 pub use none::Dust;

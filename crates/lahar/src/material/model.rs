@@ -1,6 +1,7 @@
 //! What can be asked of a model or material whose type is known at run time only.
 
 use super::{ConstitutiveModel, Material, Model, Strain, for_model};
+use crate::particles::Field;
 
 impl Model {
     /// The names of all models, as scene files spell them.
@@ -23,6 +24,21 @@ impl Model {
             law.wave_modulus(<M::Strain<f64> as Strain<f64, 3>>::rest(0.0))
         }
         for_model!(self, law => at_rest(law))
+    }
+
+    /// Whether `field` says something of particles of this model that others do not: F of what remembers J only is
+    /// J^(1/D) I, and J_P of what does not yield is 1.
+    pub fn informs(&self, field: Field) -> bool {
+        fn remembers<M: ConstitutiveModel<3>>(_: &M, field: Field) -> bool {
+            match field {
+                Field::DeformationGradient => {
+                    <M::Strain<f64> as Strain<f64, 3>>::JACOBIAN_COLUMN.is_none()
+                }
+                Field::PlasticJacobian => <M::Strain<f64> as Strain<f64, 3>>::IS_PLASTIC,
+                _ => true,
+            }
+        }
+        for_model!(self, law => remembers(law, field))
     }
 }
 

@@ -12,6 +12,8 @@ pub trait Strain<R: Real, const D: usize>: Copy {
     const COLUMNS: usize;
     /// The column that is J − 1, if that is all this strain keeps.
     const JACOBIAN_COLUMN: Option<usize> = None;
+    /// Whether it keeps plastic flow, J_P.
+    const IS_PLASTIC: bool = false;
     /// No deformation, in the lanes of `like`.
     fn rest(like: R) -> Self;
     /// From the columns, in order.
@@ -164,6 +166,7 @@ impl<R: Real, const D: usize> Strain<R, D> for DisplacementGradient<R, D> {
 
 impl<R: Real, const D: usize> Strain<R, D> for PlasticGradient<R, D> {
     const COLUMNS: usize = D * D + 2;
+    const IS_PLASTIC: bool = true;
     #[inline(always)]
     fn rest(like: R) -> Self {
         let zero = like.zero();

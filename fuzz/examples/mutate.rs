@@ -1,6 +1,6 @@
 //! Readers on changed files of the corpora, on any toolchain: no coverage guides it, but a million files are soon done.
 //!
-//!     cargo run --release --manifest-path fuzz/Cargo.toml --bin mutate -- csv 1000000
+//!     cargo run --release --manifest-path fuzz/Cargo.toml --example mutate -- csv 1000000
 //!
 //! Says how many were read, the slowest, and the most memory.
 
