@@ -136,7 +136,7 @@ fn go_on_from(checkpoint: Checkpoint) {
         if simulation.resume(checkpoint).is_ok() {
             let fields = FIELDS.iter().map(|info| info.field);
             drop(simulation.snapshot(&fields.collect::<Vec<_>>()));
-            drop(simulation.diagnostics());
+            simulation.diagnostics();
             for _ in 0..3 {
                 if simulation.substep().is_err() {
                     break;
