@@ -2,12 +2,15 @@
 
 use std::io::{self, Seek, SeekFrom, Write};
 
-/// Passes on what is written until that fails; from then on it takes everything and drops it. The zip writer ends
+/// Passes on what is written until that fails; from then on it takes everything, drops it, and tells of places as
+/// if it were there. The zip writer ends
 /// its archive when it is dropped, and prints if it cannot: a library does not print, and the error that is worth
 /// telling was told already.
 pub(crate) struct AfterError<W> {
     inner: W,
     failed: bool,
+    /// Where the next byte would go.
+    position: u64,
 }
 
 impl<W> AfterError<W> {
@@ -15,6 +18,7 @@ impl<W> AfterError<W> {
         Self {
             inner,
             failed: false,
+            position: 0,
         }
     }
 
@@ -40,10 +44,12 @@ impl<W> AfterError<W> {
 
 impl<W: Write> Write for AfterError<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.until_it_fails(bytes.len(), |inner| match inner.write(bytes)? {
+        let count = self.until_it_fails(bytes.len(), |inner| match inner.write(bytes)? {
             0 if !bytes.is_empty() => Err(io::ErrorKind::WriteZero.into()),
             count => Ok(count),
-        })
+        })?;
+        self.position += count as u64;
+        Ok(count)
     }
     fn flush(&mut self) -> io::Result<()> {
         self.until_it_fails((), W::flush)
@@ -52,13 +58,38 @@ impl<W: Write> Write for AfterError<W> {
 
 impl<W: Seek> Seek for AfterError<W> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.until_it_fails(0, |inner| inner.seek(to))
+        let place = match to {
+            SeekFrom::Start(place) => place,
+            SeekFrom::Current(by) | SeekFrom::End(by) => self.position.saturating_add_signed(by),
+        };
+        self.position = self.until_it_fails(place, |inner| inner.seek(to))?;
+        Ok(self.position)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_zip_archive_that_has_no_room_ends_in_silence() {
+        let options = zip::write::SimpleFileOptions::default()
+            .compression_method(zip::CompressionMethod::Stored);
+        for room in [0, 10, 40, 100, 900, 1100, 1190] {
+            let mut bytes = vec![0; room];
+            let writer = AfterError::new(io::Cursor::new(&mut bytes[..]));
+            let mut archive = zip::ZipWriter::new(writer);
+            let begun = archive.start_file("a", options);
+            let written = begun
+                .map_err(io::Error::other)
+                .and_then(|()| archive.write_all(&[7; 1000]))
+                .and_then(|()| archive.start_file("b", options).map_err(io::Error::other))
+                .and_then(|()| archive.write_all(&[8; 1000]));
+            assert!(written.is_err(), "{room} bytes hold no 2000");
+            // What would be printed when it is dropped.
+            archive.finish().unwrap();
+        }
+    }
 
     #[test]
     fn the_first_error_is_told_and_then_silence() {
