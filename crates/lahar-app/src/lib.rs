@@ -211,16 +211,21 @@ pub fn check_display() -> Result<(), AppError> {
     Ok(())
 }
 
-/// Whether there is anything to draw with, software included.
-fn check_adapter(wanted: &wgpu::InstanceDescriptor) -> Result<(), AppError> {
-    let backends = wanted.backends;
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+/// What is asked for adapters of `backends`, without a display.
+fn instance_of(wanted: &wgpu::InstanceDescriptor, backends: wgpu::Backends) -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends,
         flags: wanted.flags,
         backend_options: wanted.backend_options.clone(),
         memory_budget_thresholds: wanted.memory_budget_thresholds,
         display: None,
-    });
+    })
+}
+
+/// Whether there is anything to draw with, software included.
+fn check_adapter(wanted: &wgpu::InstanceDescriptor) -> Result<(), AppError> {
+    let backends = wanted.backends;
+    let instance = instance_of(wanted, backends);
     let found = pollster::block_on(instance.enumerate_adapters(backends));
     if found.is_empty() {
         return Err(AppError::NoAdapter(no_adapter(backends)));

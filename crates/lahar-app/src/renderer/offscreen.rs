@@ -52,13 +52,7 @@ fn adapter() -> Result<(wgpu::Adapter, String), String> {
         ..wgpu::RequestAdapterOptions::default()
     };
     let find = |backends| {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends,
-            flags: wanted.flags,
-            backend_options: wanted.backend_options.clone(),
-            memory_budget_thresholds: wanted.memory_budget_thresholds,
-            display: None,
-        });
+        let instance = crate::instance_of(&wanted, backends);
         pollster::block_on(instance.request_adapter(&options)).ok()
     };
     // GL is asked where there is nothing better only.

@@ -136,14 +136,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
             let mut columns = columns;
             let mut bounds = Bounds::NONE;
             for (index, run) in runs.iter().enumerate() {
-                let number = run.tile as usize;
-                let reach = self.grid.reach_of_rows(number);
-                self.grid.load_tile(self.isa, number, reach, &mut tile.0);
-                if let Some(next) = runs.get(index + 1) {
-                    let number = next.tile as usize;
-                    self.grid
-                        .ask_for_nodes(number, self.grid.reach_of_rows(number));
-                }
+                tile.load(self.grid, self.isa, &runs[index..]);
                 let mut found = self.block(
                     run,
                     first_row,

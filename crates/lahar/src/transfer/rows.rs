@@ -74,6 +74,12 @@ pub(super) fn scatter<
     }
 }
 
+/// `row += weight value`
+#[inline(always)]
+fn add_row<S: Simd, T: Lanes>(simd: S, row: &mut [T], weight: T::Row<S>, value: T::Row<S>) {
+    weight.mul_add(value, T::Row::load(simd, row)).store(row);
+}
+
 #[inline(always)]
 fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
@@ -93,9 +99,7 @@ fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     if D == 2 {
         for i in 0..K::NODES {
             let row = &mut tile[(base as usize + i * tile_edge) * 4..][..16];
-            T::Row::splat(simd, weights[0][q + i])
-                .mul_add(plane, T::Row::load(simd, row))
-                .store(row);
+            add_row(simd, row, T::Row::splat(simd, weights[0][q + i]), plane);
             plane = plane + a_x;
         }
     } else {
@@ -108,9 +112,7 @@ fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
             let rows = &mut tile[at..at + (K::NODES - 1) * tile_edge * 4 + 16];
             for j in 0..K::NODES {
                 let row = &mut rows[j * tile_edge * 4..][..16];
-                T::Row::splat(simd, weights[1][q + j])
-                    .mul_add(value, T::Row::load(simd, row))
-                    .store(row);
+                add_row(simd, row, T::Row::splat(simd, weights[1][q + j]), value);
                 value = value + step;
             }
             plane = plane + a_x;
@@ -136,7 +138,7 @@ pub(super) fn scatter_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
         let w_i = T::Row::splat(simd, stage.weights[0][q + i]);
         if D == 2 {
             let row = &mut tile[(base + i * tile_edge) * 4..][..16];
-            w_i.mul_add(value, T::Row::load(simd, row)).store(row);
+            add_row(simd, row, w_i, value);
             continue;
         }
         let value = w_i * value;
@@ -144,9 +146,12 @@ pub(super) fn scatter_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
         let rows = &mut tile[at..at + (K::NODES - 1) * tile_edge * 4 + 16];
         for j in 0..K::NODES {
             let row = &mut rows[j * tile_edge * 4..][..16];
-            T::Row::splat(simd, stage.weights[1][q + j])
-                .mul_add(value, T::Row::load(simd, row))
-                .store(row);
+            add_row(
+                simd,
+                row,
+                T::Row::splat(simd, stage.weights[1][q + j]),
+                value,
+            );
         }
     }
 }

@@ -92,14 +92,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
             let (mut stage, mut padded) = (Stage::new(), Padded::new());
             let mut tile = TileCopy::new();
             for (index, run) in runs.iter().enumerate() {
-                let number = run.tile as usize;
-                let reach = self.grid.reach_of_rows(number);
-                self.grid.load_tile(self.isa, number, reach, &mut tile.0);
-                if let Some(next) = runs.get(index + 1) {
-                    let number = next.tile as usize;
-                    self.grid
-                        .ask_for_nodes(number, self.grid.reach_of_rows(number));
-                }
+                tile.load(self.grid, self.isa, &runs[index..]);
                 for start in run.rows().step_by(CHUNK) {
                     self.ask_for(start + AHEAD);
                     let count = CHUNK.min(run.end as usize - start);
