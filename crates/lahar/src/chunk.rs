@@ -21,7 +21,7 @@ pub(crate) struct Chunk<'a, T> {
     pub(crate) count: usize,
 }
 
-/// Room for the rows of chunks that are not full: they repeat the last particle.
+/// Room for the rows of chunks that are not full.
 #[repr(align(64))]
 pub(crate) struct Padded<T>([Rows<T>; MOST_COLUMNS]);
 
@@ -30,7 +30,8 @@ impl<T: Copy + Default> Padded<T> {
         Self([[T::default(); CHUNK]; MOST_COLUMNS])
     }
 
-    /// What `work` makes of rows `start .. start + count` of `columns`, `count` from 1 to [`CHUNK`].
+    /// What `work` makes of rows `start .. start + count` of `columns`, `count` from 1 to [`CHUNK`]; what comes
+    /// after them in the chunk are other rows, or the last one again.
     #[inline(always)]
     pub(crate) fn with<R>(
         &mut self,
@@ -39,7 +40,7 @@ impl<T: Copy + Default> Padded<T> {
         count: usize,
         work: impl FnOnce(Chunk<'_, T>) -> R,
     ) -> R {
-        if count == CHUNK {
+        if columns.iter().all(|column| start + CHUNK <= column.len()) {
             return work(Chunk {
                 columns,
                 start,
@@ -58,7 +59,8 @@ impl<T: Copy + Default> Padded<T> {
         })
     }
 
-    /// The same for `work` that changes its columns, given with the row where the chunk begins.
+    /// The same for `work` that changes its columns, given with the row where the chunk begins; after rows
+    /// `start .. start + count` comes the last one again.
     #[inline(always)]
     pub(crate) fn with_mut<R>(
         &mut self,
@@ -110,8 +112,12 @@ impl<T: Lanes> Largest<T> {
 
     /// The largest so far; not a number if one was not finite.
     pub(crate) fn get(&self) -> f64 {
-        let largest = self.lanes.iter().map(|x| x.to_f64()).fold(0.0, f64::max);
-        largest + self.check.iter().map(|x| x.to_f64()).sum::<f64>()
+        let (mut largest, mut check) = (T::default(), T::default());
+        for (x, bad) in self.lanes.iter().zip(&self.check) {
+            largest = largest.max(*x);
+            check += *bad;
+        }
+        (largest + check).to_f64()
     }
 }
 
@@ -155,11 +161,11 @@ mod tests {
     fn rows_that_are_not_there_repeat_the_last() {
         let numbers: Vec<f32> = (0..100).map(|i| i as f32).collect();
         let mut padded = Padded::new();
-        for (start, count) in [(0, CHUNK), (17, CHUNK), (90, 10), (99, 1)] {
+        for (start, count) in [(0, CHUNK), (17, CHUNK), (40, 5), (90, 10), (99, 1)] {
             padded.with(&[&numbers], start, count, |chunk| {
                 assert_eq!((chunk.columns.len(), chunk.count), (1, count));
                 for p in 0..CHUNK {
-                    let expected = (start + p.min(count - 1)) as f32;
+                    let expected = (start + p).min(99) as f32;
                     assert_eq!(chunk.columns[0][chunk.start + p], expected);
                 }
             });

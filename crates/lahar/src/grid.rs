@@ -115,8 +115,8 @@ pub(crate) struct Grid<T, const D: usize> {
     /// By block, then ascending coordinates of the tile's block.
     links: Vec<Link<D>>,
     links_of_block: Vec<u32>,
-    /// Indices into `links` by tile.
-    links_by_tile: Vec<u32>,
+    /// The same by tile, so that what a tile reads lies side by side.
+    links_by_tile: Vec<Link<D>>,
     links_of_tile: Vec<u32>,
     columns: Columns<D>,
     tiles: Vec<T>,
@@ -167,11 +167,9 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
     pub(crate) fn bytes(&self) -> usize {
         let reals = [&self.tiles, &self.nodes, &self.impulses, &self.excess];
         size_of::<T>() * reals.map(Vec::capacity).into_iter().sum::<usize>()
-            + size_of::<Link<D>>() * self.links.capacity()
+            + size_of::<Link<D>>() * (self.links.capacity() + self.links_by_tile.capacity())
             + size_of::<Reach<D>>() * self.reach.capacity()
-            + 4 * (self.links_by_tile.capacity()
-                + self.links_of_block.capacity()
-                + self.links_of_tile.capacity())
+            + 4 * (self.links_of_block.capacity() + self.links_of_tile.capacity())
             + size_of::<[i32; D]>() * (self.blocks.capacity() + self.tile_blocks.capacity())
     }
 
@@ -282,11 +280,10 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             of_tile[tile] += of_tile[tile - 1];
         }
         let mut next = of_tile.clone();
-        self.links_by_tile.clear();
-        self.links_by_tile.resize(self.links.len(), 0);
-        for (index, link) in self.links.iter().enumerate() {
+        self.links_by_tile.clone_from(&self.links);
+        for link in &self.links {
             let place = &mut next[link.tile as usize];
-            self.links_by_tile[*place as usize] = index as u32;
+            self.links_by_tile[*place as usize] = *link;
             *place += 1;
         }
         self.links_of_tile = of_tile;
@@ -522,19 +519,23 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         for link in &self.links[start as usize..end as usize] {
             let tile = link.tile as usize * self.tile_len();
             self.spans(link, self.reach[link.tile as usize], |_, span| {
-                prefetch(&[&self.tiles[..]], tile + span.start, span.len());
+                prefetch(&self.tiles[tile + span.start..][..span.len()]);
             });
         }
     }
 
+    /// The links of a tile, in order of blocks.
+    fn links_of(&self, tile: usize) -> &[Link<D>] {
+        &self.links_by_tile
+            [self.links_of_tile[tile] as usize..self.links_of_tile[tile + 1] as usize]
+    }
+
     /// Asks memory for what [`Self::load_tile`] will read for `tile`.
     pub(crate) fn ask_for_nodes(&self, tile: usize, reach: Reach<D>) {
-        let range = self.links_of_tile[tile] as usize..self.links_of_tile[tile + 1] as usize;
-        for &link in &self.links_by_tile[range] {
-            let link = &self.links[link as usize];
+        for link in self.links_of(tile) {
             let block = link.block as usize * self.block_len();
             self.spans(link, reach, |span, _| {
-                prefetch(&[&self.nodes[..]], block + span.start, span.len());
+                prefetch(&self.nodes[block + span.start..][..span.len()]);
             });
         }
     }
@@ -600,9 +601,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
 
     #[inline(always)]
     fn copy_nodes<S: Simd>(&self, simd: S, tile: usize, reach: Reach<D>, out: &mut [T]) {
-        let range = self.links_of_tile[tile] as usize..self.links_of_tile[tile + 1] as usize;
-        for &link in &self.links_by_tile[range] {
-            let link = &self.links[link as usize];
+        for link in self.links_of(tile) {
             let block = &self.nodes[link.block as usize * self.block_len()..][..self.block_len()];
             for plane in 0..self.planes {
                 let from = &block[plane * BLOCK_NODES * QUAD..];

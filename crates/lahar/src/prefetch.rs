@@ -5,44 +5,61 @@
     reason = "the instruction takes an address; measured in docs/performance.md"
 )]
 
+use crate::chunk::Rows;
+
 /// Bytes that memory is asked for at a time.
 const LINE: usize = 64;
 
-/// Asks for rows `start .. start + count` of each column that has them. Changes nothing.
+/// Asks for rows `start .. start + CHUNK` of each column that has them. Changes nothing.
 #[inline(always)]
-pub(crate) fn prefetch<T>(
-    columns: &[impl core::ops::Deref<Target = [T]>],
-    start: usize,
-    count: usize,
-) {
-    #[cfg(target_arch = "x86_64")]
+pub(crate) fn prefetch_chunk<T>(columns: &[impl core::ops::Deref<Target = [T]>], start: usize) {
     for column in columns {
-        let rows = column.get(start..start + count).unwrap_or_default();
-        for line in rows.chunks(LINE / size_of::<T>()) {
-            // SAFETY: the address is that of a number in the slice; the instruction reads nothing that
-            // the program could see, and is part of every x86-64 processor.
-            unsafe {
-                core::arch::x86_64::_mm_prefetch::<{ core::arch::x86_64::_MM_HINT_T0 }>(
-                    line.as_ptr().cast(),
-                );
+        if let Some(rows) = column.get(start..).and_then(|rows| rows.first_chunk()) {
+            let rows: &Rows<T> = rows;
+            for line in rows.chunks(LINE / size_of::<T>()) {
+                ask(line);
             }
         }
     }
+}
+
+/// Asks for `numbers`. Changes nothing.
+#[inline(always)]
+pub(crate) fn prefetch<T>(numbers: &[T]) {
+    for line in numbers.chunks(LINE / size_of::<T>()) {
+        ask(line);
+    }
+}
+
+/// Asks for the line of the cache in which `numbers` begins.
+#[inline(always)]
+fn ask<T>(numbers: &[T]) {
+    #[cfg(target_arch = "x86_64")]
+    // SAFETY: the address is that of a slice; the instruction reads nothing that the program could see, and
+    // is part of every x86-64 processor.
+    unsafe {
+        core::arch::x86_64::_mm_prefetch::<{ core::arch::x86_64::_MM_HINT_T0 }>(
+            numbers.as_ptr().cast(),
+        );
+    }
     #[cfg(not(target_arch = "x86_64"))]
-    let _ = (columns, start, count);
+    let _ = numbers;
 }
 
 #[cfg(test)]
 mod tests {
-    use super::prefetch;
+    use super::{prefetch, prefetch_chunk};
 
     #[test]
     fn it_asks_for_what_is_there_only() {
         let columns = [vec![1.0_f32; 100], Vec::new(), vec![2.0; 3]];
         for start in [0, 90, 99, 100, 1000] {
-            prefetch(&columns, start, 32);
+            prefetch_chunk(&columns, start);
         }
-        let slices: Vec<&mut [f64]> = Vec::new();
-        prefetch(&slices, 0, 8);
+        let none: [&mut [f64]; 0] = [];
+        prefetch_chunk(&none, 0);
+        for count in [0, 3, 16, 100] {
+            prefetch(&columns[0][..count]);
+        }
     }
 }

@@ -23,6 +23,9 @@ pub const SMALLEST_JACOBIAN: f64 = 0.1;
 /// fluid without tension, so that forgetting creates no energy.
 pub const TORN: f64 = 1.1;
 
+/// Tait's exponent for water: powers of it are multiplied out when compiled.
+const WATER: f64 = 7.0;
+
 /// p(J), cut off where it would pull harder than `tension`, plus viscosity:
 /// τ = −J p I + J (μ (∇v + ∇vᵀ − (2/d) tr ∇v I) + κ tr ∇v I).
 ///
@@ -92,7 +95,7 @@ impl Fluid {
     /// 1480 m/s only makes the time step short.
     pub fn water_like(density: f64, sound_speed: f64) -> Self {
         Self {
-            eos: Eos::Tait { gamma: 7.0 },
+            eos: Eos::Tait { gamma: WATER },
             viscosity: 1.002e-3,
             volume: VolumeRule::Corrected(VolumeCorrection::default()),
             ..Self::inviscid(density * sound_speed * sound_speed)
@@ -156,6 +159,7 @@ impl Fluid {
         let e = floored(jacobian_minus_one);
         let k = self.bulk_modulus;
         let pressure = match self.eos {
+            Eos::Tait { gamma: WATER } => power_minus_one(e, -WATER) * e.lit(k / WATER),
             Eos::Tait { gamma } => power_minus_one(e, -gamma) * e.lit(k / gamma),
             Eos::LinearJ => -e * e.lit(k),
         };
@@ -259,11 +263,12 @@ impl<const D: usize> ConstitutiveModel<D> for Fluid {
     fn wave_modulus<R: Real>(&self, strain: Dilatation<R>) -> R {
         let e = floored(strain.jacobian_minus_one);
         let j = e.min(e.lit(self.cut_off())) + e.one();
-        let exponent = match self.eos {
-            Eos::Tait { gamma } => 1.0 - gamma,
-            Eos::LinearJ => 2.0,
+        let stiffening = match self.eos {
+            Eos::Tait { gamma: WATER } => j.power(1.0 - WATER),
+            Eos::Tait { gamma } => j.power(1.0 - gamma),
+            Eos::LinearJ => j * j,
         };
-        j.power(exponent) * e.lit(self.bulk_modulus)
+        stiffening * e.lit(self.bulk_modulus)
     }
 
     fn volume_rule(&self) -> VolumeRule {

@@ -5,7 +5,7 @@
 use super::real::{Mask, Real, Scalar};
 use core::ops::{Add, Mul};
 use fearless_simd::prelude::*;
-use fearless_simd::{f32x4, f32x16, f64x4, f64x8, i32x16, mask32x16, mask64x8};
+use fearless_simd::{f32x4, f32x8, f32x16, f64x4, f64x8, i32x16, mask32x16, mask64x8};
 
 /// Scalars that know their lane type on an instruction set.
 pub trait Lanes: Scalar {
@@ -50,8 +50,12 @@ pub trait Row<S: Simd, T>: Copy + Add<Output = Self> + Mul<Output = Self> {
     fn spread(simd: S, slice: &[T]) -> Self;
     /// `self * a + b`; fused but on the portable instruction set.
     fn mul_add(self, a: Self, b: Self) -> Self;
-    /// The sum over the four nodes, to the first four numbers of `slice`.
-    fn fold(self, slice: &mut [T]);
+    /// Adds `weight * self` to the first `nodes` nodes of `slice`, one node at a time or, if `by_pairs`, two;
+    /// fused but on the portable instruction set. Less of it lies across two lines of the cache than of a
+    /// whole row, and a node just written is read again without waiting.
+    fn add_scaled(self, simd: S, weight: T, slice: &mut [T], nodes: usize, by_pairs: bool);
+    /// The sums over the nodes of each of four rows, to the first sixteen numbers of `slice`.
+    fn fold_four(rows: [Self; 4], slice: &mut [T]);
 }
 
 macro_rules! lanes {
@@ -243,16 +247,70 @@ impl<S: Simd> Row<S, f32> for f32x16<S> {
         SimdFloat::mul_add(self, a, b)
     }
     #[inline(always)]
-    fn fold(self, slice: &mut [f32]) {
-        let (low, high) = self.split();
-        let (a, b) = (low + high).split();
-        (a + b).store_slice(&mut slice[..4]);
+    fn add_scaled(self, simd: S, weight: f32, slice: &mut [f32], nodes: usize, by_pairs: bool) {
+        let (n01, n23) = self.split();
+        let ((n0, n1), (n2, n3)) = (n01.split(), n23.split());
+        if by_pairs && nodes >= 2 {
+            add_pair(simd, weight, n01, slice);
+        } else {
+            add_node(simd, weight, n0, slice);
+            if nodes >= 2 {
+                add_node(simd, weight, n1, &mut slice[4..]);
+            }
+        }
+        if by_pairs && nodes >= 4 {
+            add_pair(simd, weight, n23, &mut slice[8..]);
+            return;
+        }
+        if nodes >= 3 {
+            add_node(simd, weight, n2, &mut slice[8..]);
+        }
+        if nodes >= 4 {
+            add_node(simd, weight, n3, &mut slice[12..]);
+        }
     }
+    #[inline(always)]
+    fn fold_four([a, b, c, d]: [Self; 4], slice: &mut [f32]) {
+        let ((ab_even, ab_odd), (cd_even, cd_odd)) = (even_odd(a, b), even_odd(c, d));
+        (ab_even.combine(cd_even) + ab_odd.combine(cd_odd)).store_slice(&mut slice[..16]);
+    }
+}
+
+/// `slice[..4] += weight node`
+#[inline(always)]
+fn add_node<S: Simd>(simd: S, weight: f32, node: f32x4<S>, slice: &mut [f32]) {
+    let slice = &mut slice[..4];
+    let sum = f32x4::from_slice(simd, slice);
+    SimdFloat::mul_add(f32x4::splat(simd, weight), node, sum).store_slice(slice);
+}
+
+/// `slice[..8] += weight pair`
+#[inline(always)]
+fn add_pair<S: Simd>(simd: S, weight: f32, pair: f32x8<S>, slice: &mut [f32]) {
+    let slice = &mut slice[..8];
+    let sum = f32x8::from_slice(simd, slice);
+    SimdFloat::mul_add(f32x8::splat(simd, weight), pair, sum).store_slice(slice);
+}
+
+/// Nodes 0 + 2 of two rows, and nodes 1 + 3 of them.
+#[inline(always)]
+fn even_odd<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> (f32x8<S>, f32x8<S>) {
+    let ((a_low, a_high), (b_low, b_high)) = (a.split(), b.split());
+    let (a, b) = (a_low.combine(b_low) + a_high.combine(b_high)).split();
+    let ((a_even, a_odd), (b_even, b_odd)) = (a.split(), b.split());
+    (a_even.combine(b_even), a_odd.combine(b_odd))
 }
 
 /// A row in `f64`: nodes 0 and 1, nodes 2 and 3.
 #[derive(Clone, Copy, Debug)]
 pub struct F64Row<S: Simd>(f64x8<S>, f64x8<S>);
+
+/// The sums over the nodes of two rows.
+#[inline(always)]
+fn sum_two<S: Simd>(a: F64Row<S>, b: F64Row<S>) -> f64x8<S> {
+    let ((a_even, a_odd), (b_even, b_odd)) = ((a.0 + a.1).split(), (b.0 + b.1).split());
+    a_even.combine(b_even) + a_odd.combine(b_odd)
+}
 
 impl<S: Simd> Add for F64Row<S> {
     type Output = Self;
@@ -313,8 +371,18 @@ impl<S: Simd> Row<S, f64> for F64Row<S> {
         )
     }
     #[inline(always)]
-    fn fold(self, slice: &mut [f64]) {
-        let (a, b) = (self.0 + self.1).split();
-        (a + b).store_slice(&mut slice[..4]);
+    fn add_scaled(self, simd: S, weight: f64, slice: &mut [f64], nodes: usize, _by_pairs: bool) {
+        let ((n0, n1), (n2, n3)) = (self.0.split(), self.1.split());
+        let weight = f64x4::splat(simd, weight);
+        let parts = [n0, n1, n2, n3].into_iter().take(nodes);
+        for (part, slice) in parts.zip(slice.chunks_exact_mut(4)) {
+            let sum = f64x4::from_slice(simd, slice);
+            SimdFloat::mul_add(weight, part, sum).store_slice(slice);
+        }
+    }
+    #[inline(always)]
+    fn fold_four([a, b, c, d]: [Self; 4], slice: &mut [f64]) {
+        sum_two(a, b).store_slice(&mut slice[..8]);
+        sum_two(c, d).store_slice(&mut slice[8..16]);
     }
 }

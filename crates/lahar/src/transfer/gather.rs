@@ -13,7 +13,7 @@ use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_vector};
 use crate::math::{Lanes, Mask, Matrix, Real, Vector};
 use crate::parallel;
-use crate::prefetch::prefetch;
+use crate::prefetch::prefetch_chunk;
 use crate::setup::Transfer;
 use crate::sort::in_range;
 use crate::store::{ColumnsMut, Group, Layout, PerParticle, Run, block_edge};
@@ -182,7 +182,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         let (mut failed, mut failures) = (None, 0);
         for row in run.rows().step_by(CHUNK) {
             let start = row - first_row;
-            prefetch(columns, start + AHEAD, CHUNK);
+            prefetch_chunk(columns, start + AHEAD);
             let count = CHUNK.min(run.end as usize - row);
             let found = padded.with_mut(columns, start, count, |columns, at| {
                 let found = with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
@@ -377,7 +377,7 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
         p += T::WIDTH;
     }
     // Lanes past the end repeat the last particle, so that maxima are those of particles.
-    for p in 0..p {
+    for p in (0..p).step_by(4) {
         rows::gather::<S, T, D, K, SPLIT, CLASSIC>(
             simd,
             stage,

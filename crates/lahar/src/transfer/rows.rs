@@ -74,10 +74,16 @@ pub(super) fn scatter<
     }
 }
 
-/// `row += weight value`
+/// Adds `weight value` to the stencil's row that begins with `row`. Node by node in 2D, by pairs in 3D, where
+/// what a row costs besides weighs more: measured.
 #[inline(always)]
-fn add_row<S: Simd, T: Lanes>(simd: S, row: &mut [T], weight: T::Row<S>, value: T::Row<S>) {
-    weight.mul_add(value, T::Row::load(simd, row)).store(row);
+fn add_row<S: Simd, T: Lanes, const D: usize, K: BSpline>(
+    simd: S,
+    row: &mut [T],
+    weight: T,
+    value: T::Row<S>,
+) {
+    value.add_scaled(simd, weight, row, K::NODES, D == 3);
 }
 
 #[inline(always)]
@@ -99,7 +105,7 @@ fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     if D == 2 {
         for i in 0..K::NODES {
             let row = &mut tile[(base as usize + i * tile_edge) * 4..][..16];
-            add_row(simd, row, T::Row::splat(simd, weights[0][q + i]), plane);
+            add_row::<S, T, D, K>(simd, row, weights[0][q + i], plane);
             plane = plane + a_x;
         }
     } else {
@@ -112,7 +118,7 @@ fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
             let rows = &mut tile[at..at + (K::NODES - 1) * tile_edge * 4 + 16];
             for j in 0..K::NODES {
                 let row = &mut rows[j * tile_edge * 4..][..16];
-                add_row(simd, row, T::Row::splat(simd, weights[1][q + j]), value);
+                add_row::<S, T, D, K>(simd, row, weights[1][q + j], value);
                 value = value + step;
             }
             plane = plane + a_x;
@@ -135,23 +141,18 @@ pub(super) fn scatter_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     let value = T::Row::<S>::spread(simd, &stage.weights[D - 1][q..])
         * T::Row::<S>::repeat(simd, &stage.momentum[0][q..]);
     for i in 0..K::NODES {
-        let w_i = T::Row::splat(simd, stage.weights[0][q + i]);
+        let w_i = stage.weights[0][q + i];
         if D == 2 {
             let row = &mut tile[(base + i * tile_edge) * 4..][..16];
-            add_row(simd, row, w_i, value);
+            add_row::<S, T, D, K>(simd, row, w_i, value);
             continue;
         }
-        let value = w_i * value;
+        let value = T::Row::splat(simd, w_i) * value;
         let at = (base + i * tile_edge * tile_edge) * 4;
         let rows = &mut tile[at..at + (K::NODES - 1) * tile_edge * 4 + 16];
         for j in 0..K::NODES {
             let row = &mut rows[j * tile_edge * 4..][..16];
-            add_row(
-                simd,
-                row,
-                T::Row::splat(simd, stage.weights[1][q + j]),
-                value,
-            );
+            add_row::<S, T, D, K>(simd, row, stage.weights[1][q + j], value);
         }
     }
 }
@@ -250,7 +251,7 @@ fn plane<T, const D: usize, K: BSpline>(
     &tile[at * 4..][..rows * tile_edge * 4 + 16]
 }
 
-/// Σ w of the nodes' quads, to `momentum[0]`: what [`gather`] finds there.
+/// Σ w of the nodes' quads, to `momentum[0]`: what [`gather`] finds there. For particles `p .. p + 4`.
 #[inline(always)]
 pub(super) fn gather_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
@@ -259,6 +260,24 @@ pub(super) fn gather_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     tile_edge: usize,
     tile: &[T],
 ) {
+    let sums = [
+        sum_of_quads::<S, T, D, K>(simd, stage, p, tile_edge, tile),
+        sum_of_quads::<S, T, D, K>(simd, stage, p + 1, tile_edge, tile),
+        sum_of_quads::<S, T, D, K>(simd, stage, p + 2, tile_edge, tile),
+        sum_of_quads::<S, T, D, K>(simd, stage, p + 3, tile_edge, tile),
+    ];
+    T::Row::fold_four(sums, &mut stage.momentum[0][4 * p..]);
+}
+
+/// The sum of [`gather_quad`] for particle `p`, still node by node along the row.
+#[inline(always)]
+fn sum_of_quads<S: Simd, T: Lanes, const D: usize, K: BSpline>(
+    simd: S,
+    stage: &Stage<T>,
+    p: usize,
+    tile_edge: usize,
+    tile: &[T],
+) -> T::Row<S> {
     let q = 4 * p;
     let base = stage.base[p] as usize;
     let w_row = T::Row::<S>::spread(simd, &stage.weights[D - 1][q..]);
@@ -272,11 +291,19 @@ pub(super) fn gather_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
         );
         sum = sum + T::Row::splat(simd, stage.weights[0][q + i]) * row;
     }
-    (sum * w_row).fold(&mut stage.momentum[0][q..]);
+    sum * w_row
 }
 
-/// (5), (6) for particle `p`: Σ w v to `momentum[0]`, Σ w v (n_a − centre) to `momentum[1 + a]`; if `SPLIT`,
-/// Σ w Δv to `impulse[0]`; if `CLASSIC`, dx Σ v ∂_a w to `impulse[1 + a]`.
+/// What the rows of one particle's stencil add up to, still node by node along the row; as quads in the stage.
+struct Sums<R> {
+    /// Σ w v and Σ w v (n_a − centre).
+    momentum: [R; 4],
+    /// Σ w Δv and dx Σ v ∂_a w.
+    impulse: [R; 4],
+}
+
+/// (5), (6) for particles `p .. p + 4`: Σ w v to `momentum[0]`, Σ w v (n_a − centre) to `momentum[1 + a]`; if
+/// `SPLIT`, Σ w Δv to `impulse[0]`; if `CLASSIC`, dx Σ v ∂_a w to `impulse[1 + a]`.
 #[inline(always)]
 pub(super) fn gather<
     S: Simd,
@@ -293,6 +320,31 @@ pub(super) fn gather<
     tile_plane: usize,
     tile: &[T],
 ) {
+    let a = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p, tile_edge, tile_plane, tile);
+    let b = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p + 1, tile_edge, tile_plane, tile);
+    let c = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p + 2, tile_edge, tile_plane, tile);
+    let d = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p + 3, tile_edge, tile_plane, tile);
+    let q = 4 * p;
+    for m in 0..=D {
+        let rows = [a.momentum[m], b.momentum[m], c.momentum[m], d.momentum[m]];
+        T::Row::fold_four(rows, &mut stage.momentum[m][q..]);
+    }
+    for m in usize::from(!SPLIT)..if CLASSIC { 1 + D } else { 1 } {
+        let rows = [a.impulse[m], b.impulse[m], c.impulse[m], d.impulse[m]];
+        T::Row::fold_four(rows, &mut stage.impulse[m][q..]);
+    }
+}
+
+/// The sums of [`gather`] for particle `p`.
+#[inline(always)]
+fn sums<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const CLASSIC: bool>(
+    simd: S,
+    stage: &Stage<T>,
+    p: usize,
+    tile_edge: usize,
+    tile_plane: usize,
+    tile: &[T],
+) -> Sums<T::Row<S>> {
     let q = 4 * p;
     let base = stage.base[p] as usize;
     let k = along::<S, T>(simd);
@@ -317,14 +369,13 @@ pub(super) fn gather<
         }
     }
     let sum = sum * w_row;
-    sum.fold(&mut stage.momentum[0][q..]);
-    (by_i * w_row).fold(&mut stage.momentum[1][q..]);
+    let mut momentum = [sum, by_i * w_row, zero, zero];
     if D == 3 {
-        (by_j * w_row).fold(&mut stage.momentum[2][q..]);
+        momentum[2] = by_j * w_row;
     }
-    (sum * (k + T::Row::splat(simd, T::from_f64(-(K::CENTRE as f64)))))
-        .fold(&mut stage.momentum[D][q..]);
+    momentum[D] = sum * (k + T::Row::splat(simd, T::from_f64(-(K::CENTRE as f64))));
 
+    let mut impulse = [zero; 4];
     if SPLIT {
         let change = &tile[tile_plane..];
         let mut sum = zero;
@@ -340,7 +391,7 @@ pub(super) fn gather<
                 sum,
             );
         }
-        (sum * w_row).fold(&mut stage.impulse[0][q..]);
+        impulse[0] = sum * w_row;
     }
     if CLASSIC {
         let g_row = T::Row::<S>::spread(simd, &stage.gradients[D - 1][q..]);
@@ -372,10 +423,11 @@ pub(super) fn gather<
                 );
             }
         }
-        (by_x * w_row).fold(&mut stage.impulse[1][q..]);
+        impulse[1] = by_x * w_row;
         if D == 3 {
-            (by_y * w_row).fold(&mut stage.impulse[2][q..]);
+            impulse[2] = by_y * w_row;
         }
-        (by_row * g_row).fold(&mut stage.impulse[D][q..]);
+        impulse[D] = by_row * g_row;
     }
+    Sums { momentum, impulse }
 }

@@ -7,7 +7,7 @@ use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_matrix, load_vector};
 use crate::math::{Lanes, Matrix, Real, Vector};
 use crate::parallel;
-use crate::prefetch::prefetch;
+use crate::prefetch::prefetch_chunk;
 use crate::setup::Transfer;
 use crate::store::{Group, Layout, Run, block_edge, slices};
 use fearless_simd::Simd;
@@ -152,29 +152,30 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
     fn ask_for(&self, start: usize) {
         match self.what {
             What::Momentum => {
-                prefetch(self.columns, start, CHUNK);
-                prefetch(&[self.group.mass.each_row()], start, CHUNK);
+                prefetch_chunk(self.columns, start);
+                prefetch_chunk(&[self.group.mass.each_row()], start);
             }
             What::Volume { .. } => {
-                prefetch(&self.columns[..D], start, CHUNK);
-                prefetch(&self.columns[Layout::strain(D)..], start, CHUNK);
+                prefetch_chunk(&self.columns[..D], start);
+                prefetch_chunk(&self.columns[Layout::strain(D)..], start);
             }
         }
-        prefetch(&[self.group.volume0.each_row()], start, CHUNK);
+        prefetch_chunk(&[self.group.volume0.each_row()], start);
     }
 
     /// The nodes between the lowest and the highest places of a block's particles.
     fn reach(&self, stage: &Stage<T>) -> Reach<D> {
         let first = first_node(D);
         let node = |u: f64| (u.floor() + first) as u8;
-        let of = |lanes: &[T; 16], start: f64, pick: fn(f64, f64) -> f64| {
-            lanes.iter().map(|u| u.to_f64()).fold(start, pick)
-        };
         let mut reach = Reach::NOTHING;
         for axis in 0..D {
-            reach.low[axis] = node(of(&stage.lowest[axis], f64::INFINITY, f64::min));
-            reach.high[axis] = node(of(&stage.highest[axis], f64::NEG_INFINITY, f64::max))
-                + self.scheme.kernel_nodes() as u8;
+            let (mut lowest, mut highest) = (stage.lowest[axis][0], stage.highest[axis][0]);
+            for (low, high) in stage.lowest[axis].iter().zip(&stage.highest[axis]) {
+                lowest = lowest.min(*low);
+                highest = highest.max(*high);
+            }
+            reach.low[axis] = node(lowest.to_f64());
+            reach.high[axis] = node(highest.to_f64()) + self.scheme.kernel_nodes() as u8;
         }
         reach
     }
@@ -262,15 +263,23 @@ impl<T: Lanes> Buffers<T> {
     }
 }
 
-/// Remembers how far a register of particles reaches.
+/// Remembers how far the first `count` of a register of particles reach.
 #[inline(always)]
 fn note_places<S: Simd, T: Lanes, const D: usize>(
     simd: S,
     u: Vector<T::Of<S>, D>,
+    count: usize,
     stage: &mut Stage<T>,
 ) {
     for axis in 0..D {
         let (lowest, highest) = (&mut stage.lowest[axis], &mut stage.highest[axis]);
+        if count < T::WIDTH {
+            for lane in 0..count {
+                lowest[lane] = lowest[lane].min(u[axis].lane(lane));
+                highest[lane] = highest[lane].max(u[axis].lane(lane));
+            }
+            continue;
+        }
         T::store::<S>(T::load(simd, lowest).min(u[axis]), lowest);
         T::store::<S>(T::load(simd, highest).max(u[axis]), highest);
     }
@@ -288,7 +297,7 @@ fn prepare_volumes<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     let mut p = 0;
     while p < chunk.count {
         let u = load_vector::<S, T, D>(simd, chunk.columns, chunk.start + p);
-        note_places::<S, T, D>(simd, u, stage);
+        note_places::<S, T, D>(simd, u, chunk.count - p, stage);
         stencil::<S, T, D, K, false>(u, p, stage);
         let volume0 = T::load(simd, &particles.volume0[p..]);
         let dilated = volume0 * T::load(simd, &stage.matrix[0][p..]);
@@ -323,7 +332,7 @@ fn prepare<
     while p < particles.chunk.count {
         let at = particles.chunk.start + p;
         let u = load_vector(simd, columns, at);
-        note_places::<S, T, D>(simd, u, stage);
+        note_places::<S, T, D>(simd, u, particles.chunk.count - p, stage);
         let s = stencil::<S, T, D, K, CLASSIC>(u, p, stage);
         let m = T::load(simd, &particles.mass[p..]);
         let zero = m.zero();

@@ -14,7 +14,7 @@ use crate::material::rheology::shear_rate;
 use crate::material::{IsaToken, VolumeCorrection, load_matrix, load_vector};
 use crate::math::{Lanes, Real};
 use crate::parallel;
-use crate::prefetch::prefetch;
+use crate::prefetch::prefetch_chunk;
 use crate::setup::Kernel;
 use crate::store::{Group, Layout, Run, slices};
 use fearless_simd::Simd;
@@ -117,9 +117,9 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
 
     /// Asks memory for the chunk that begins with row `start`.
     fn ask_for(&self, start: usize) {
-        prefetch(&self.columns[..D], start, CHUNK);
+        prefetch_chunk(&self.columns[..D], start);
         if let Read::Correction(_) = self.what {
-            prefetch(&self.columns[Layout::affine(D)..], start, CHUNK);
+            prefetch_chunk(&self.columns[Layout::affine(D)..], start);
         }
     }
 
@@ -165,7 +165,7 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline>(
         stencil::<S, T, D, K, false>(u, p, stage);
         p += T::WIDTH;
     }
-    for p in 0..count {
+    for p in (0..p).step_by(4) {
         gather_quad::<S, T, D, K>(simd, stage, p, tile_edge::<D>(K::NODES), tile);
     }
     let cell = T::broadcast(simd, T::from_f64(task.scheme.dx.powi(D as i32)));
