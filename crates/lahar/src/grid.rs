@@ -28,7 +28,7 @@ use crate::boundary::walls::Walls;
 use crate::dispatch::on_level;
 use crate::forces::{self, Force};
 use crate::material::IsaToken;
-use crate::math::{Lanes, Vector};
+use crate::math::{Lanes, Real, Vector};
 use crate::parallel;
 use crate::prefetch::prefetch;
 use crate::setup::Transfer;
@@ -352,9 +352,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         walls: &Walls<D>,
         colliders: &[Moving<D>],
     ) {
-        self.sum(isa, |this, block, nodes| {
-            this.update_block(block, nodes, forces);
-        });
+        self.sum(isa, Some(forces));
         self.taken.clear();
         self.taken.resize(2 * D + colliders.len(), Taken::NOTHING);
         self.constrain(walls);
@@ -417,12 +415,11 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
 
     /// Sums the tiles' contributions and leaves them as they are.
     pub(crate) fn sum_tiles(&mut self, isa: IsaToken) {
-        self.sum(isa, |_, _, _| {});
+        self.sum(isa, None);
     }
 
-    /// Sums the tiles' contributions, and calls `then(self, block, its nodes)` on each block.
-    #[inline(always)]
-    fn sum(&mut self, isa: IsaToken, then: impl Fn(&Self, usize, &mut [T]) + Sync) {
+    /// Sums the tiles' contributions, and lets `forces` act on them.
+    fn sum(&mut self, isa: IsaToken, forces: Option<&NodeForces<T, D>>) {
         let mut nodes = core::mem::take(&mut self.nodes);
         let block_len = self.block_len();
         let grain = parallel::grain(self.blocks.len(), 16);
@@ -433,7 +430,9 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
                 for (index, block) in piece.chunks_exact_mut(block_len).enumerate() {
                     this.ask_for_tiles(first + index + 1);
                     this.gather_tiles(simd, first + index, block);
-                    then(this, first + index, block);
+                    if let Some(forces) = forces {
+                        this.update_block(simd, first + index, block, forces);
+                    }
                 }
             });
         });
@@ -540,45 +539,83 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         }
     }
 
+    /// Momentum to velocity for the nodes of a block, and what acts on them all.
     #[inline(always)]
-    fn update_block(&self, block: usize, nodes: &mut [T], forces: &NodeForces<T, D>) {
-        let edge = block_edge(D);
-        let first: [i64; D] = self.blocks[block].map(|b| i64::from(b) * edge as i64);
-        let (momentum, impulse) = nodes.split_at_mut(BLOCK_NODES * QUAD);
-        for index in 0..BLOCK_NODES {
-            let quad = &mut momentum[index * QUAD..(index + 1) * QUAD];
-            let mass = quad[3];
-            if mass <= T::default() {
-                continue;
-            }
-            let per_mass = T::from_f64(1.0) / mass;
-            let sums = Vector::<T, D>::from_fn(|axis| quad[axis]);
-            let before = sums * per_mass;
-            // Forces act on momentum, and then comes one division: added to velocities, gravity's impulse
-            // would round the same way on every node of a body that moves as one.
-            let mut impulses = forces.gravity_impulse * mass;
-            if self.planes == 2 {
-                impulses += Vector::from_fn(|axis| impulse[index * QUAD + axis]);
-            }
-            if !self.impulses.is_empty() {
-                let of_node = &self.impulses[(block * BLOCK_NODES + index) * D..][..D];
-                impulses += Vector::from_fn(|axis| of_node[axis]) * mass; // (9)
-            }
-            let mut velocity = (sums + impulses) * per_mass;
-            if let Some((kept, medium)) = forces.drag {
-                velocity = medium + (velocity - medium) * kept; // (10)
-            }
-            if let Some(pointer) = &forces.pointer {
-                let node =
-                    core::array::from_fn(|axis| first[axis] + axis_index::<D>(index, axis) as i64);
-                velocity = pointer.act(velocity, node, forces.dt);
-            }
+    fn update_block<S: Simd>(
+        &self,
+        simd: S,
+        block: usize,
+        nodes: &mut [T],
+        forces: &NodeForces<T, D>,
+    ) {
+        let (momentum, change) = nodes.split_at_mut(BLOCK_NODES * QUAD);
+        for first in (0..BLOCK_NODES).step_by(T::WIDTH) {
+            let quads = &mut momentum[first * QUAD..];
+            let mut node = T::load_quads(simd, quads);
+            let mass = node[3];
+            let empty = mass.le(mass.zero());
+            let per_mass = mass.one() / mass;
             for axis in 0..D {
-                quad[axis] = velocity[axis];
+                let sum = node[axis];
+                // Forces act on momentum, and then comes one division: added to velocities, gravity's impulse
+                // would round the same way on every node of a body that moves as one.
+                let mut impulse = mass.splat(forces.gravity_impulse[axis]) * mass;
                 if self.planes == 2 {
-                    impulse[index * QUAD + axis] = velocity[axis] - before[axis];
+                    let quads = &mut change[first * QUAD..];
+                    let mut stress = T::load_quads(simd, quads);
+                    impulse += stress[axis];
+                    let before = sum * per_mass;
+                    stress[axis] = Real::select(empty, stress[axis], before);
+                    T::store_quads::<S>(stress, quads);
+                }
+                if !self.impulses.is_empty() {
+                    impulse += self.node_impulses(simd, block * BLOCK_NODES + first, axis) * mass; // (9)
+                }
+                let mut velocity = (sum + impulse) * per_mass;
+                if let Some((kept, medium)) = forces.drag {
+                    let medium = mass.splat(medium[axis]);
+                    velocity = medium + (velocity - medium) * mass.splat(kept); // (10)
+                }
+                node[axis] = Real::select(empty, sum, velocity);
+            }
+            T::store_quads::<S>(node, quads);
+        }
+        if let Some(pointer) = &forces.pointer {
+            self.point(block, momentum, pointer, forces.dt);
+        }
+        if self.planes == 2 {
+            // From the velocity before forces to the change by them.
+            let nodes = momentum.chunks_exact(QUAD).zip(change.chunks_exact_mut(QUAD));
+            for (quad, change) in nodes.filter(|(quad, _)| !(quad[3] <= T::default())) {
+                for axis in 0..D {
+                    change[axis] = quad[axis] - change[axis];
                 }
             }
+        }
+    }
+
+    /// One axis of Δt a on the register of nodes that begins with `node`.
+    #[inline(always)]
+    fn node_impulses<S: Simd>(&self, simd: S, node: usize, axis: usize) -> T::Of<S> {
+        let mut lanes = [T::default(); 16];
+        let impulses = self.impulses[node * D..].chunks_exact(D);
+        for (lane, impulse) in lanes[..T::WIDTH].iter_mut().zip(impulses) {
+            *lane = impulse[axis];
+        }
+        T::load(simd, &lanes)
+    }
+
+    /// Lets the hand act on the nodes of a block.
+    fn point(&self, block: usize, quads: &mut [T], pointer: &NodePointer<D>, dt: T) {
+        let first: [i64; D] = self.blocks[block].map(|b| i64::from(b) * block_edge(D) as i64);
+        for (index, quad) in quads.chunks_exact_mut(QUAD).enumerate() {
+            if quad[3] <= T::default() {
+                continue;
+            }
+            let node =
+                core::array::from_fn(|axis| first[axis] + axis_index::<D>(index, axis) as i64);
+            let velocity = pointer.act(Vector::from_fn(|axis| quad[axis]), node, dt);
+            quad[..D].copy_from_slice(&velocity.0);
         }
     }
 
