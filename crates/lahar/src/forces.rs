@@ -170,21 +170,21 @@ impl<const D: usize> Force<D> {
 }
 
 /// Σ of the accelerations at `positions` \[m/s²\], of the forces that act on particles or of the
-/// others, into `out`.
+/// others, into `out`; `scratch` is as long.
 pub(crate) fn accelerations<const D: usize>(
     forces: &[Force<D>],
     on_particles: bool,
     time: f64,
     positions: &[[f64; D]],
     starts: &[[f64; D]],
+    scratch: &mut [[f64; D]],
     out: &mut [[f64; D]],
 ) {
     out.fill([0.0; D]);
-    let mut scratch = vec![[0.0; D]; out.len()];
     for force in forces {
         if force.acts_on_particles() == on_particles {
             let starts = if on_particles { starts } else { &[] };
-            force.add(time, positions, starts, &mut scratch, out);
+            force.add(time, positions, starts, scratch, out);
         }
     }
 }

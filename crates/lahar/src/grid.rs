@@ -38,6 +38,7 @@ use columns::Columns;
 use core::ops::Range;
 use fearless_simd::Simd;
 pub(crate) use filling::OUTSIDE;
+use surfaces::Near;
 use tile::{Piece, axis_pieces};
 pub(crate) use tile::{Reach, Tiles, tile_edge, tile_plane};
 
@@ -132,6 +133,8 @@ pub(crate) struct Grid<T, const D: usize> {
     pub(crate) taken: Vec<Taken<D>>,
     /// By node of the tiles' blocks, what [`Grid::measure_filling`] found.
     excess: Vec<T>,
+    /// By collider.
+    near: Vec<Near<D>>,
 }
 
 impl<T: Lanes, const D: usize> Grid<T, D> {
@@ -157,6 +160,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             },
             taken: vec![Taken::NOTHING; 2 * D],
             excess: Vec::new(),
+            near: Vec::new(),
         }
     }
 
@@ -304,11 +308,19 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         let this = &*self;
         parallel::for_chunks(&mut impulses, BLOCK_NODES * D, 0, grain, &|first, piece| {
             let _flush = crate::float_mode::FlushToZero::enter();
-            let mut accelerations = [[0.0; D]; BLOCK_NODES];
+            let (mut scratch, mut found) = ([[0.0; D]; BLOCK_NODES], [[0.0; D]; BLOCK_NODES]);
             for (index, impulse) in piece.chunks_exact_mut(BLOCK_NODES * D).enumerate() {
                 let positions = this.node_positions(first + index, origin, dx);
-                forces::accelerations(forces, false, time, &positions, &[], &mut accelerations);
-                for (impulse, a) in impulse.iter_mut().zip(accelerations.as_flattened()) {
+                forces::accelerations(
+                    forces,
+                    false,
+                    time,
+                    &positions,
+                    &[],
+                    &mut scratch,
+                    &mut found,
+                );
+                for (impulse, a) in impulse.iter_mut().zip(found.as_flattened()) {
                     *impulse = T::from_f64(dt * a);
                 }
             }
@@ -356,10 +368,11 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         self.taken.clear();
         self.taken.resize(2 * D + colliders.len(), Taken::NOTHING);
         self.constrain(walls);
-        let around: Vec<_> = colliders
-            .iter()
-            .map(|collider| self.around(collider, walls, forces.dx))
-            .collect();
+        let mut near = core::mem::take(&mut self.near);
+        near.resize_with(colliders.len(), Near::default);
+        for (collider, near) in colliders.iter().zip(&mut near) {
+            self.around(collider, walls, forces.dx, near);
+        }
         self.columns.fold(
             &mut self.nodes,
             self.planes,
@@ -367,9 +380,10 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             self.blend,
             &mut self.taken,
         );
-        for (number, (collider, near)) in colliders.iter().zip(around).enumerate() {
+        for (number, (collider, near)) in colliders.iter().zip(&mut near).enumerate() {
             self.hold(collider, 2 * D + number, near, walls);
         }
+        self.near = near;
     }
 
     /// Lets the walls of [`crate::WallStyle::Nodes`] act.
@@ -585,7 +599,9 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         }
         if self.planes == 2 {
             // From the velocity before forces to the change by them.
-            let nodes = momentum.chunks_exact(QUAD).zip(change.chunks_exact_mut(QUAD));
+            let nodes = momentum
+                .chunks_exact(QUAD)
+                .zip(change.chunks_exact_mut(QUAD));
             for (quad, change) in nodes.filter(|(quad, _)| !(quad[3] <= T::default())) {
                 for axis in 0..D {
                     change[axis] = quad[axis] - change[axis];

@@ -72,8 +72,8 @@ pub trait Kernels<const D: usize>: Lanes {
         walls: &Walls<D>,
         colliders: &[Moving<D>],
     );
-    /// G2P, and particles put out of colliders; what the colliders took by that, lengths in cells from
-    /// node 0.
+    /// G2P, and particles put out of colliders; what the colliders take by that comes to `taken`, lengths in
+    /// cells from node 0.
     #[doc(hidden)]
     fn gather(
         group: &mut Group<Self, D>,
@@ -82,7 +82,8 @@ pub trait Kernels<const D: usize>: Lanes {
         scheme: Scheme,
         isa: IsaToken,
         dt: f64,
-    ) -> (Bounds, Vec<Taken<D>>);
+        taken: &mut Vec<Taken<D>>,
+    ) -> Bounds;
 }
 
 macro_rules! instance {
@@ -150,8 +151,9 @@ macro_rules! instance {
                 scheme: Scheme,
                 isa: IsaToken,
                 dt: f64,
-            ) -> (Bounds, Vec<Taken<$d>>) {
-                gather::gather(group, grid, around, scheme, isa, dt)
+                taken: &mut Vec<Taken<$d>>,
+            ) -> Bounds {
+                gather::gather(group, grid, around, scheme, isa, dt, taken)
             }
         }
     )*};

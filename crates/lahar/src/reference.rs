@@ -19,7 +19,7 @@ use crate::boundary::collider::Moving;
 use crate::boundary::contact::{Column, ColumnNode};
 use crate::boundary::impulse::Taken;
 use crate::boundary::pointer::Push;
-use crate::boundary::surface::{NearNode, hold, near, put_out};
+use crate::boundary::surface::{NearNode, Room, hold, near, put_out};
 use crate::boundary::walls::Walls;
 use crate::error::SetupError;
 use crate::forces;
@@ -221,6 +221,7 @@ impl<const D: usize> Reference<D> {
                 self.time,
                 &[p.position.0],
                 &[start],
+                &mut [[0.0; D]],
                 &mut a,
             );
             p.velocity += Vector(a[0]) * dt; // (11)
@@ -439,7 +440,15 @@ impl<const D: usize> Reference<D> {
                 });
                 let mut field = [[0.0; D]];
                 let all = &self.setup.forces;
-                forces::accelerations(all, false, self.time, &[x], &[], &mut field);
+                forces::accelerations(
+                    all,
+                    false,
+                    self.time,
+                    &[x],
+                    &[],
+                    &mut [field[0]],
+                    &mut field,
+                );
                 let mut free = over(n.momentum + n.impulse, n.mass);
                 free += (gravity + Vector(field[0])) * dt; // (9)
                 if let Some((kept, medium)) = forces::drag(all, dt) {
@@ -475,7 +484,11 @@ impl<const D: usize> Reference<D> {
             .walls
             .period
             .map(|cells| cells.map(|cells| cells as f64));
-        let of = |collider: &Collider<D>| Moving::of(collider, self.time, dt, period);
+        let of = |collider: &Collider<D>| {
+            let mut moving = Moving::of(collider, period);
+            moving.put(collider, self.time, dt);
+            moving
+        };
         self.colliders.iter().map(of).collect()
     }
 
@@ -512,7 +525,8 @@ impl<const D: usize> Reference<D> {
             Transfer::Flip { blend } => blend,
             Transfer::Pic | Transfer::Apic => 0.0,
         };
-        hold(&mut nodes, find, collider.contact, blend, taken);
+        let room = &mut Room::default();
+        hold(&mut nodes, find, collider.contact, blend, taken, room);
         for near in &nodes {
             let velocity = Velocity {
                 mass: near.mass,

@@ -218,6 +218,10 @@ pub struct Simulation<T: Instance<D>, const D: usize> {
     pub(crate) walls: Walls<D>,
     /// Lengths in cells from node 0.
     pub(crate) colliders: Vec<Collider<D>>,
+    /// The same in the present substep.
+    pub(crate) moving: Vec<Moving<D>>,
+    /// Room for what colliders take by putting particles out.
+    pub(crate) taken_by_run: Vec<Taken<D>>,
     /// Where node 0 is \[m\].
     pub(crate) origin: [f64; D],
     pub(crate) scheme: Scheme,
@@ -302,8 +306,13 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             .collect::<Vec<_>>();
         let origin = setup.domain.as_ref().map_or([0.0; D], |domain| domain.min);
         let in_cells = |collider: &Collider<D>| collider.in_units(setup.dx, origin).rooted(&walls);
+        let colliders: Vec<_> = setup.colliders.iter().map(in_cells).collect();
+        let period = walls.period.map(|cells| cells.map(|cells| cells as f64));
+        let moving = |collider: &Collider<D>| Moving::of(collider, period);
         let mut simulation = Self {
-            colliders: setup.colliders.iter().map(in_cells).collect(),
+            moving: colliders.iter().map(moving).collect(),
+            taken_by_run: Vec::new(),
+            colliders,
             walls,
             origin,
             grid: Grid::new(scheme),
@@ -367,7 +376,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         let count = batch.position.len();
         check_batch(batch, &self.setup, self.next_id)?;
         let offset = self.scheme.offset();
-        let now = self.moving(0.0);
+        self.move_colliders(0.0);
         let (hold, origin, dx) = (self.walls.hold, self.origin, self.setup.dx);
         let place_of = |position: &[f64; D]| -> [(i32, f64); D] {
             core::array::from_fn(|axis| {
@@ -405,7 +414,14 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             let edge = block_edge(D) as f64;
             let middle = block.map(|block| edge * (f64::from(block) + 0.5) + offset);
             let (mut x, mut v) = (Vector(place.map(|(_, x)| x)), Vector([0.0; D]));
-            put_out(&now, &hold, middle, (&mut x, &mut v), dx, |_, _, _| {});
+            put_out(
+                &self.moving,
+                &hold,
+                middle,
+                (&mut x, &mut v),
+                dx,
+                |_, _, _| {},
+            );
             let row = (before + i) as u32;
             match group.runs.last_mut() {
                 Some(run) if run.start >= before as u32 && run.block == block => run.end = row + 1,
@@ -593,6 +609,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             time,
             &positions,
             &starts,
+            &mut found.clone(),
             &mut found,
         );
         found
@@ -624,11 +641,16 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         self.sort_if_drifted();
         self.set_volumes_right(dt);
         self.push_particles(dt);
-        let colliders = self.moving(dt);
+        self.move_colliders(dt);
         self.scatter(dt); // (1)–(4)
+        let colliders = core::mem::take(&mut self.moving);
         self.update(dt, &colliders);
-        self.gather(dt, limit, &colliders)?; // (5)–(8)
-        self.account(&colliders);
+        let gathered = self.gather(dt, limit, &colliders); // (5)–(8)
+        if gathered.is_ok() {
+            self.account(&colliders);
+        }
+        self.moving = colliders;
+        gathered?;
         let before = self.control.time();
         self.press_probes();
         self.control.taken(dt, limit);
@@ -637,15 +659,12 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         Ok(())
     }
 
-    /// The colliders in a substep of `dt` \[s\].
-    fn moving(&self, dt: f64) -> Vec<Moving<D>> {
-        let period = self
-            .walls
-            .period
-            .map(|cells| cells.map(|cells| cells as f64));
+    /// Puts the colliders where they are in a substep of `dt` \[s\].
+    fn move_colliders(&mut self, dt: f64) {
         let time = self.control.time();
-        let of = |collider: &Collider<D>| Moving::of(collider, time, dt, period);
-        self.colliders.iter().map(of).collect()
+        for (moving, collider) in self.moving.iter_mut().zip(&self.colliders) {
+            moving.put(collider, time, dt);
+        }
     }
 
     /// What boundaries took in this substep, to what they have taken since the start.
@@ -839,9 +858,15 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                 push: push.as_ref(),
                 colliders,
             };
-            let (found, taken) = T::gather(group, &self.grid, around, self.scheme, self.isa, dt);
-            for (total, taken) in self.grid.taken[2 * D..].iter_mut().zip(&taken) {
-                total.add_scaled(taken, 1.0, [0.0; D]);
+            let taken = &mut self.taken_by_run;
+            let found = T::gather(group, &self.grid, around, self.scheme, self.isa, dt, taken);
+            // Run after run: the order of sums does not depend on threads.
+            for (number, total) in self.grid.taken[2 * D..].iter_mut().enumerate() {
+                let mut of_group = Taken::NOTHING;
+                for taken in taken.iter().skip(number).step_by(colliders.len()) {
+                    of_group.add_scaled(taken, 1.0, [0.0; D]);
+                }
+                total.add_scaled(&of_group, 1.0, [0.0; D]);
             }
             speed_squared = speed_squared.max(found.speed_squared);
             moved = moved.max(found.moved);

@@ -73,7 +73,9 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             starts: _, // only grows: the ids say how far
             grid: _,   // follows from the runs
             walls: _,
-            colliders: _, // follow from the time
+            colliders: _,
+            moving: _, // follow from the time
+            taken_by_run: _,
             origin: _,
             scheme: _,
             isa: _,

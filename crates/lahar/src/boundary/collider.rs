@@ -111,25 +111,17 @@ impl<const D: usize> Collider<D> {
 
     /// Where it is at `time` \[s\].
     pub fn at(&self, time: f64) -> Placed<D> {
-        let (moved, turn) = self.motion.at(self.center, time);
-        let turns = turn != [0.0; 3];
-        let rotation = if turns {
-            rotation(turn)
-        } else {
-            Matrix::identity(1.0)
-        };
-        let place = |solid: &Solid<D>| {
-            let arm = Vector(solid.center()) - Vector(self.center);
-            (solid.clone(), moved + (rotation * arm - arm))
-        };
-        Placed {
+        let still = |solid: &Solid<D>| (solid.clone(), Vector([0.0; D]));
+        let mut placed = Placed {
             rest: self.center,
-            moved,
-            rotation,
-            turns,
-            solids: self.solids.iter().map(place).collect(),
+            moved: Vector([0.0; D]),
+            rotation: Matrix::identity(1.0),
+            turns: false,
+            solids: self.solids.iter().map(still).collect(),
             period: [None; D],
-        }
+        };
+        placed.put(self, time);
+        placed
     }
 
     /// A bound on the speed of its points within `span` \[s\] from `time` \[s\] on, as far as they are
@@ -256,6 +248,22 @@ pub struct Placed<const D: usize> {
 }
 
 impl<const D: usize> Placed<D> {
+    /// Makes this where `collider`, which it was made of, is at `time`.
+    fn put(&mut self, collider: &Collider<D>, time: f64) {
+        let (moved, turn) = collider.motion.at(collider.center, time);
+        self.moved = moved;
+        self.turns = turn != [0.0; 3];
+        self.rotation = if self.turns {
+            rotation(turn)
+        } else {
+            Matrix::identity(1.0)
+        };
+        for (solid, its_move) in &mut self.solids {
+            let arm = Vector(solid.center()) - Vector(self.rest);
+            *its_move = moved + (self.rotation * arm - arm);
+        }
+    }
+
     /// Distance of `x` from the surface, negative inside, and the unit vector out of the collider, in
     /// the unit of length that the collider is in.
     pub fn distance(&self, x: [f64; D]) -> (f64, [f64; D]) {
@@ -331,24 +339,32 @@ pub(crate) struct Moving<const D: usize> {
 }
 
 impl<const D: usize> Moving<D> {
-    /// `collider` from `time` for `dt`, on axes of these lengths if periodic.
-    pub(crate) fn of(collider: &Collider<D>, time: f64, dt: f64, period: [Option<f64>; D]) -> Self {
-        let mut start = collider.at(time);
-        let mut end = collider.at(time + dt);
-        (start.period, end.period) = (period, period);
-        let per_time = if dt > 0.0 { 1.0 / dt } else { 0.0 };
+    /// `collider` at time 0, standing still, on axes of these lengths if periodic.
+    pub(crate) fn of(collider: &Collider<D>, period: [Option<f64>; D]) -> Self {
+        let mut start = collider.at(0.0);
+        start.period = period;
         Self {
             contact: collider.contact,
             moves: collider.motion != Motion::Still,
-            velocity: (end.moved - start.moved) * per_time,
-            turning: if start.turns || end.turns {
-                (end.rotation * start.rotation.transpose() - Matrix::identity(1.0)) * per_time
-            } else {
-                Matrix::scaled_identity(0.0)
-            },
+            velocity: Vector([0.0; D]),
+            turning: Matrix::scaled_identity(0.0),
+            end: start.clone(),
             start,
-            end,
         }
+    }
+
+    /// Makes this `collider`, which it was made of, from `time` for `dt`.
+    pub(crate) fn put(&mut self, collider: &Collider<D>, time: f64, dt: f64) {
+        let Self { start, end, .. } = self;
+        start.put(collider, time);
+        end.put(collider, time + dt);
+        let per_time = if dt > 0.0 { 1.0 / dt } else { 0.0 };
+        self.velocity = (end.moved - start.moved) * per_time;
+        self.turning = if start.turns || end.turns {
+            (end.rotation * start.rotation.transpose() - Matrix::identity(1.0)) * per_time
+        } else {
+            Matrix::scaled_identity(0.0)
+        };
     }
 
     /// The velocity of the collider at `x` from `base`, in units of length a second: it carries each of

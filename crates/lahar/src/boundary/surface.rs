@@ -96,7 +96,23 @@ pub(crate) fn near<const D: usize>(
     })
 }
 
+/// Room for what [`hold`] works out, kept from substep to substep.
+#[derive(Debug, Default)]
+pub(crate) struct Room<const D: usize> {
+    /// The nodes as they were.
+    free: Vec<NearNode<D>>,
+    changed: Vec<bool>,
+    leaders: Vec<(usize, f64)>,
+    held: Vec<Held<D>>,
+    /// Of each node: the mass carried, the momentum brought, and the same before forces.
+    brought: Vec<Brought<D>>,
+}
+
+/// What held nodes bring to a free one, (15): mass, momentum, momentum before forces.
+type Brought<const D: usize> = (Matrix<f64, D>, Vector<f64, D>, Vector<f64, D>);
+
 /// A held node and whom it follows.
+#[derive(Debug)]
 struct Held<const D: usize> {
     index: usize,
     /// Which of the list of leaders are its own.
@@ -114,6 +130,7 @@ pub(crate) fn hold<const D: usize>(
     contact: Contact,
     blend: f64,
     taken: &mut Taken<D>,
+    room: &mut Room<D>,
 ) {
     let friction = match contact {
         Contact::Open => return,
@@ -121,22 +138,31 @@ pub(crate) fn hold<const D: usize>(
         Contact::Slip { friction } | Contact::Separate { friction } => friction,
     };
     let sticky = contact == Contact::Sticky;
-    let free: Vec<NearNode<D>> = nodes.to_vec();
+    let Room {
+        free,
+        changed,
+        leaders,
+        held: all_held,
+        brought: sums,
+    } = room;
+    free.clear();
+    free.extend_from_slice(nodes);
     for node in nodes.iter_mut() {
         node.velocity -= node.moving;
         node.before -= node.moving;
     }
-    let mut changed = vec![false; nodes.len()];
+    changed.clear();
+    changed.resize(nodes.len(), false);
 
     // Who follows whom.
-    let mut leaders: Vec<(usize, f64)> = Vec::new();
-    let mut all_held: Vec<Held<D>> = Vec::new();
+    leaders.clear();
+    all_held.clear();
     for (index, held) in nodes.iter().enumerate() {
         if held.distance >= HELD {
             continue;
         }
         let first = leaders.len();
-        follow(held, nodes, &find, &mut leaders);
+        follow(held, nodes, &find, leaders);
         let own = &leaders[first..];
         let pulled: f64 = own
             .iter()
@@ -157,8 +183,9 @@ pub(crate) fn hold<const D: usize>(
 
     // (15), solved for the change.
     let zero = Vector([0.0; D]);
-    let mut sums = vec![(Matrix([zero; D]), zero, zero); nodes.len()];
-    for held in &all_held {
+    sums.clear();
+    sums.resize(nodes.len(), (Matrix([zero; D]), zero, zero));
+    for held in &*all_held {
         let g = nodes[held.index];
         let onto = |v: Vector<f64, D>| {
             if sticky {
@@ -186,7 +213,7 @@ pub(crate) fn hold<const D: usize>(
     }
 
     // (14), and friction.
-    for held in &all_held {
+    for held in &*all_held {
         let g = nodes[held.index];
         let along = |of: fn(&NearNode<D>) -> Vector<f64, D>| {
             let mut followed = zero;
@@ -213,8 +240,8 @@ pub(crate) fn hold<const D: usize>(
         changed[held.index] = true;
     }
 
-    for ((node, free), changed) in nodes.iter_mut().zip(&free).zip(changed) {
-        if !changed {
+    for ((node, free), changed) in nodes.iter_mut().zip(&*free).zip(&*changed) {
+        if !*changed {
             *node = *free;
             continue;
         }

@@ -2,7 +2,7 @@
 
 use super::{BLOCK_NODES, Grid, QUAD, axis_index};
 use crate::boundary::collider::Moving;
-use crate::boundary::surface::{BAND, NearNode, hold, near};
+use crate::boundary::surface::{BAND, NearNode, Room, hold, near};
 use crate::boundary::walls::Walls;
 use crate::math::{Lanes, Vector};
 use crate::store::block_edge;
@@ -10,7 +10,8 @@ use crate::store::block_edge;
 /// No node, or no block.
 const NONE: u32 = u32::MAX;
 
-/// The nodes with mass around one collider, block after block.
+/// The nodes with mass around one collider, block after block. Kept from substep to substep for its room.
+#[derive(Debug, Default)]
 pub(super) struct Near<const D: usize> {
     nodes: Vec<NearNode<D>>,
     /// Where each node's quad is.
@@ -19,19 +20,27 @@ pub(super) struct Near<const D: usize> {
     slots: Vec<u32>,
     /// By near block and node in it, which of `nodes` it is.
     index: Vec<[u32; BLOCK_NODES]>,
+    /// The nodes before the collider acts.
+    free: Vec<NearNode<D>>,
+    room: Room<D>,
 }
 
 impl<T: Lanes, const D: usize> Grid<T, D> {
     /// Finds the nodes around `collider`, before the domain's walls change masses. `dx` \[m\].
-    pub(super) fn around(&self, collider: &Moving<D>, walls: &Walls<D>, dx: f64) -> Near<D> {
+    pub(super) fn around(
+        &self,
+        collider: &Moving<D>,
+        walls: &Walls<D>,
+        dx: f64,
+        found: &mut Near<D>,
+    ) {
         let edge = block_edge(D) as i64;
         let half_diagonal = 0.5 * (edge - 1) as f64 * (D as f64).sqrt();
-        let mut found = Near {
-            nodes: Vec::new(),
-            quads: Vec::new(),
-            slots: vec![NONE; self.blocks.len()],
-            index: Vec::new(),
-        };
+        found.nodes.clear();
+        found.quads.clear();
+        found.slots.clear();
+        found.slots.resize(self.blocks.len(), NONE);
+        found.index.clear();
         for (block, coordinates) in self.blocks.iter().enumerate() {
             let first: [i64; D] = coordinates.map(|b| i64::from(b) * edge);
             let middle = first.map(|n| n as f64 + 0.5 * (edge - 1) as f64);
@@ -62,7 +71,6 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
                 found.index.push(index);
             }
         }
-        found
     }
 
     /// Lets `collider` act on the nodes around it, and adds what it takes to `self.taken[number]`.
@@ -70,12 +78,20 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         &mut self,
         collider: &Moving<D>,
         number: usize,
-        mut near: Near<D>,
+        near: &mut Near<D>,
         walls: &Walls<D>,
     ) {
         let _flush = crate::float_mode::FlushToZero::enter();
         let changes = BLOCK_NODES * QUAD;
-        for (node, &quad) in near.nodes.iter_mut().zip(&near.quads) {
+        let Near {
+            nodes,
+            quads,
+            slots,
+            index,
+            free,
+            room,
+        } = near;
+        for (node, &quad) in nodes.iter_mut().zip(&*quads) {
             node.mass = self.nodes[quad + 3].to_f64();
             node.velocity = Vector::from_fn(|axis| self.nodes[quad + axis].to_f64());
             if self.planes == 2 {
@@ -94,20 +110,14 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             let local = node.iter().fold(0, |local, n| {
                 local * edge as usize + n.rem_euclid(edge) as usize
             });
-            let index = near.index.get(near.slots[block] as usize)?[local];
+            let index = index.get(slots[block] as usize)?[local];
             (index != NONE).then_some(index as usize)
         };
         let mut taken = self.taken[number];
-        let free = near.nodes.clone();
-        hold(
-            &mut near.nodes,
-            find,
-            collider.contact,
-            self.blend,
-            &mut taken,
-        );
+        free.clone_from(nodes);
+        hold(nodes, find, collider.contact, self.blend, &mut taken, room);
         self.taken[number] = taken;
-        for ((node, free), &quad) in near.nodes.iter().zip(&free).zip(&near.quads) {
+        for ((node, free), &quad) in nodes.iter().zip(&*free).zip(&*quads) {
             // What the collider has not changed keeps its bits.
             if node.velocity == free.velocity && node.before == free.before {
                 continue;

@@ -70,7 +70,8 @@ pub(crate) struct Around<'a, const D: usize> {
     pub(crate) colliders: &'a [Moving<D>],
 }
 
-/// Moves the particles of `group` with the grid's velocities.
+/// Moves the particles of `group` with the grid's velocities. What colliders take from each run of
+/// particles that they put out comes to `taken`: run after run, collider after collider.
 pub(crate) fn gather<T: Lanes, const D: usize>(
     group: &mut Group<T, D>,
     grid: &Grid<T, D>,
@@ -78,7 +79,8 @@ pub(crate) fn gather<T: Lanes, const D: usize>(
     scheme: Scheme,
     isa: IsaToken,
     dt: f64,
-) -> (Bounds, Vec<Taken<D>>) {
+    taken: &mut Vec<Taken<D>>,
+) -> Bounds {
     let grain = parallel::grain(group.len(), 4096);
     let Group {
         law,
@@ -96,15 +98,13 @@ pub(crate) fn gather<T: Lanes, const D: usize>(
         scheme,
         isa,
         dt,
+        cells_per_velocity: dt / scheme.dx,
+        per_dx: 1.0 / scheme.dx,
+        affine: scheme.inverse_inertia() / scheme.dx,
     };
-    let mut by_run = vec![Taken::NOTHING; runs.len() * around.colliders.len()];
-    let bounds = task.halve(runs, 0, ColumnsMut::new(columns), &mut by_run, grain);
-    // Run after run: the order of sums does not depend on threads.
-    let mut taken = vec![Taken::NOTHING; around.colliders.len()];
-    for (index, of_run) in by_run.iter().enumerate() {
-        taken[index % around.colliders.len()].add_scaled(of_run, 1.0, [0.0; D]);
-    }
-    (bounds, taken)
+    taken.clear();
+    taken.resize(runs.len() * around.colliders.len(), Taken::NOTHING);
+    task.halve(runs, 0, ColumnsMut::new(columns), taken, grain)
 }
 
 struct Task<'a, T: Lanes, const D: usize> {
@@ -117,6 +117,10 @@ struct Task<'a, T: Lanes, const D: usize> {
     scheme: Scheme,
     isa: IsaToken,
     dt: f64,
+    /// Δt / dx, 1 / dx, and D⁻¹ dx.
+    cells_per_velocity: f64,
+    per_dx: f64,
+    affine: f64,
 }
 
 impl<T: Lanes, const D: usize> Task<'_, T, D> {
@@ -388,8 +392,6 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
         );
     }
 
-    let dx = task.scheme.dx;
-    let cells_per_velocity = task.dt / dx;
     let zero = T::broadcast(simd, T::default());
     let (mut failed, mut failures) = (None, 0);
     let mut p = 0;
@@ -401,11 +403,11 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
         let mut c = gradient;
         for axis in 0..D {
             gradient.0[axis] =
-                load_quads::<S, T, D>(simd, &stage.impulse[1 + axis], p) * zero.lit(1.0 / dx);
+                load_quads::<S, T, D>(simd, &stage.impulse[1 + axis], p) * zero.lit(task.per_dx);
             // B = Σ w v rᵀ = dx (Σ w v n − v s), n and s from the centre; C = B D⁻¹
             let s = u[axis] - u[axis].floor() + zero.lit(K::OFFSET - K::CENTRE as f64);
             let moment = load_quads::<S, T, D>(simd, &stage.momentum[1 + axis], p);
-            c.0[axis] = (moment - v * s) * zero.lit(K::INVERSE_INERTIA / dx); // (6), (3)
+            c.0[axis] = (moment - v * s) * zero.lit(task.affine); // (6), (3)
         }
         if !K::INVERSE_INERTIA.is_finite() {
             c = gradient;
@@ -416,7 +418,7 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
             let change = load_quads::<S, T, D>(simd, &stage.impulse[0], p);
             new_v = (old_v + change) * zero.lit(blend) + v * zero.lit(1.0 - blend);
         }
-        let step = v * zero.lit(cells_per_velocity);
+        let step = v * zero.lit(task.cells_per_velocity);
         let mut new_u = u + step; // (8)
         if let Some(hold) = &keep.hold {
             for axis in 0..D {

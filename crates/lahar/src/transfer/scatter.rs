@@ -8,7 +8,7 @@ use crate::material::{IsaToken, load_matrix, load_vector};
 use crate::math::{Lanes, Matrix, Real, Vector};
 use crate::parallel;
 use crate::prefetch::prefetch_chunk;
-use crate::setup::Transfer;
+use crate::setup::{ForceForm, Transfer};
 use crate::store::{Group, Layout, Run, block_edge, slices};
 use fearless_simd::Simd;
 
@@ -40,7 +40,10 @@ pub(crate) fn scatter<T: Lanes, const D: usize>(
         columns: &slices(&group.columns)[..group.columns.len()],
         scheme,
         isa,
-        dt,
+        impulse: match scheme.force {
+            ForceForm::Mls => -dt * scheme.inverse_inertia() / scheme.dx,
+            ForceForm::Classic => -dt / scheme.dx,
+        },
         what,
     };
     let grain = parallel::grain(group.len(), 4096);
@@ -52,7 +55,8 @@ struct Task<'a, T: Lanes, const D: usize> {
     columns: &'a [&'a [T]],
     scheme: Scheme,
     isa: IsaToken,
-    dt: f64,
+    /// −Δt D⁻¹ dx, to be met by V⁰ τ r / dx; or −Δt / dx, to be met by V⁰ τ dx ∂w.
+    impulse: f64,
     what: What,
 }
 
@@ -343,13 +347,7 @@ fn prepare<
         if apic {
             affine = load_matrix(simd, &columns[Layout::affine(D)..], at) * (m * m.lit(dx));
         }
-        // −Δt V⁰ D⁻¹ τ dx, or −Δt V⁰ τ / dx to be met by dx ∂w.
-        let scale = if CLASSIC {
-            -task.dt / dx
-        } else {
-            -task.dt * K::INVERSE_INERTIA / dx
-        };
-        let volume = volume0 * m.lit(scale);
+        let volume = volume0 * m.lit(task.impulse);
         let mut stress = affine;
         for j in 0..D {
             for i in 0..D {
