@@ -54,7 +54,11 @@ pub trait Row<S: Simd, T>: Copy + Add<Output = Self> + Mul<Output = Self> {
     /// fused but on the portable instruction set. Less of it lies across two lines of the cache than of a
     /// whole row, and a node just written is read again without waiting.
     fn add_scaled(self, simd: S, weight: T, slice: &mut [T], nodes: usize, by_pairs: bool);
-    /// The sums over the nodes of each of four rows, to the first sixteen numbers of `slice`.
+    /// Whether there are registers for the rows of four particles at once.
+    const ROOM_FOR_FOUR: bool;
+    /// The sum over the four nodes, to the first four numbers of `slice`.
+    fn fold(self, slice: &mut [T]);
+    /// The same of each of four rows, to the first sixteen numbers of `slice`.
     fn fold_four(rows: [Self; 4], slice: &mut [T]);
 }
 
@@ -269,6 +273,13 @@ impl<S: Simd> Row<S, f32> for f32x16<S> {
             add_node(simd, weight, n3, &mut slice[12..]);
         }
     }
+    const ROOM_FOR_FOUR: bool = S::f32s::LEN >= 16;
+    #[inline(always)]
+    fn fold(self, slice: &mut [f32]) {
+        let (low, high) = self.split();
+        let (a, b) = (low + high).split();
+        (a + b).store_slice(&mut slice[..4]);
+    }
     #[inline(always)]
     fn fold_four([a, b, c, d]: [Self; 4], slice: &mut [f32]) {
         let ((ab_even, ab_odd), (cd_even, cd_odd)) = (even_odd(a, b), even_odd(c, d));
@@ -304,13 +315,6 @@ fn even_odd<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> (f32x8<S>, f32x8<S>) {
 /// A row in `f64`: nodes 0 and 1, nodes 2 and 3.
 #[derive(Clone, Copy, Debug)]
 pub struct F64Row<S: Simd>(f64x8<S>, f64x8<S>);
-
-/// The sums over the nodes of two rows.
-#[inline(always)]
-fn sum_two<S: Simd>(a: F64Row<S>, b: F64Row<S>) -> f64x8<S> {
-    let ((a_even, a_odd), (b_even, b_odd)) = ((a.0 + a.1).split(), (b.0 + b.1).split());
-    a_even.combine(b_even) + a_odd.combine(b_odd)
-}
 
 impl<S: Simd> Add for F64Row<S> {
     type Output = Self;
@@ -380,9 +384,16 @@ impl<S: Simd> Row<S, f64> for F64Row<S> {
             SimdFloat::mul_add(weight, part, sum).store_slice(slice);
         }
     }
+    const ROOM_FOR_FOUR: bool = false;
     #[inline(always)]
-    fn fold_four([a, b, c, d]: [Self; 4], slice: &mut [f64]) {
-        sum_two(a, b).store_slice(&mut slice[..8]);
-        sum_two(c, d).store_slice(&mut slice[8..16]);
+    fn fold(self, slice: &mut [f64]) {
+        let (a, b) = (self.0 + self.1).split();
+        (a + b).store_slice(&mut slice[..4]);
+    }
+    #[inline(always)]
+    fn fold_four(rows: [Self; 4], slice: &mut [f64]) {
+        for (row, slice) in rows.into_iter().zip(slice.chunks_exact_mut(4)) {
+            row.fold(slice);
+        }
     }
 }

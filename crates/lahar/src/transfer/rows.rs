@@ -320,6 +320,20 @@ pub(super) fn gather<
     tile_plane: usize,
     tile: &[T],
 ) {
+    let used = usize::from(!SPLIT)..if CLASSIC { 1 + D } else { 1 };
+    if !T::Row::<S>::ROOM_FOR_FOUR {
+        for p in p..p + 4 {
+            let one =
+                sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p, tile_edge, tile_plane, tile);
+            for m in 0..=D {
+                one.momentum[m].fold(&mut stage.momentum[m][4 * p..]);
+            }
+            for m in used.clone() {
+                one.impulse[m].fold(&mut stage.impulse[m][4 * p..]);
+            }
+        }
+        return;
+    }
     let a = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p, tile_edge, tile_plane, tile);
     let b = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p + 1, tile_edge, tile_plane, tile);
     let c = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p + 2, tile_edge, tile_plane, tile);
@@ -329,7 +343,7 @@ pub(super) fn gather<
         let rows = [a.momentum[m], b.momentum[m], c.momentum[m], d.momentum[m]];
         T::Row::fold_four(rows, &mut stage.momentum[m][q..]);
     }
-    for m in usize::from(!SPLIT)..if CLASSIC { 1 + D } else { 1 } {
+    for m in used {
         let rows = [a.impulse[m], b.impulse[m], c.impulse[m], d.impulse[m]];
         T::Row::fold_four(rows, &mut stage.impulse[m][q..]);
     }
