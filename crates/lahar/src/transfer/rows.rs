@@ -8,9 +8,9 @@
 //! ```
 //!
 //! and mass rides along as the fourth number of P₀. The four nodes of a row, k = 0 .. 3, lie side by
-//! side in the tile: one register in f32 with AVX-512. With w_k multiplied in first, a row costs one
-//! fused multiply-add. Likewise G2P sums rows by j, then by i, and the row itself once at the end,
-//! keeping Σ, Σ·i, Σ·j and Σ·k, with i, j, k counted from the stencil's middle node. In 2D a row is (i) and lies along j.
+//! side in the tile: one register in f32 with AVX-512. With w_k multiplied in first, a row is w_j times
+//! one register, and is added to its nodes one by one or by pairs. Likewise G2P sums rows by j, then by
+//! i, and the row itself once at the end, keeping Σ, Σ·i, Σ·j and Σ·k, with i, j, k counted from the stencil's middle node. In 2D a row is (i) and lies along j.
 //!
 //! `reference` does the same sums node by node; tests hold the two together.
 
