@@ -19,6 +19,7 @@
 
 mod columns;
 mod filling;
+mod links;
 mod surfaces;
 mod tile;
 
@@ -38,8 +39,8 @@ use columns::Columns;
 use core::ops::Range;
 use fearless_simd::Simd;
 pub(crate) use filling::OUTSIDE;
+use links::{Link, Links};
 use surfaces::Near;
-use tile::{Piece, axis_pieces};
 pub(crate) use tile::{Reach, Tiles, tile_edge, tile_plane};
 
 /// Numbers a node and plane.
@@ -50,35 +51,6 @@ const ROW: usize = 4;
 
 /// Nodes a block, in 2D and 3D.
 pub(crate) const BLOCK_NODES: usize = 64;
-
-/// A part of a block that a tile covers: node `l` of the block (on each axis, `low ≤ l < high`) is
-/// node `l + shift` of the tile.
-#[derive(Clone, Copy, Debug)]
-struct Link<const D: usize> {
-    block: u32,
-    tile: u32,
-    shift: [i16; D],
-    low: [u8; D],
-    high: [u8; D],
-}
-
-impl<const D: usize> Link<D> {
-    /// Its nodes within `reach`: `low ≤ node < high` in the block, if there are any.
-    #[inline(always)]
-    fn within(&self, reach: Reach<D>) -> Option<([usize; D], [usize; D])> {
-        let (mut low, mut high) = ([0; D], [0; D]);
-        for axis in 0..D {
-            let in_block =
-                |node: u8| (isize::from(node) - self.shift[axis] as isize).max(0) as usize;
-            low[axis] = usize::from(self.low[axis]).max(in_block(reach.low[axis]));
-            high[axis] = usize::from(self.high[axis]).min(in_block(reach.high[axis]));
-            if low[axis] >= high[axis] {
-                return None;
-            }
-        }
-        Some((low, high))
-    }
-}
 
 /// Forces on nodes that are not stress: gravity, drag and the hand. (Accelerations that differ from
 /// node to node are in the grid.)
@@ -111,14 +83,11 @@ pub(crate) struct Grid<T, const D: usize> {
     tile_edge: usize,
     /// Blocks that particles are in, ascending; each has a tile.
     tile_blocks: Vec<[i32; D]>,
+    /// By tile, whether a group scatters to it; while tiles are given out.
+    claimed: Vec<bool>,
     /// Blocks that have nodes, ascending.
     blocks: Vec<[i32; D]>,
-    /// By block, then ascending coordinates of the tile's block.
-    links: Vec<Link<D>>,
-    links_of_block: Vec<u32>,
-    /// The same by tile, so that what a tile reads lies side by side.
-    links_by_tile: Vec<Link<D>>,
-    links_of_tile: Vec<u32>,
+    links: Links<D>,
     columns: Columns<D>,
     tiles: Vec<T>,
     /// By tile, what its last scatters reached.
@@ -144,11 +113,9 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             planes: scheme.planes(),
             tile_edge: tile_edge::<D>(scheme.kernel_nodes()),
             tile_blocks: Vec::new(),
+            claimed: Vec::new(),
             blocks: Vec::new(),
-            links: Vec::new(),
-            links_of_block: vec![0],
-            links_by_tile: Vec::new(),
-            links_of_tile: vec![0],
+            links: Links::new(),
             columns: Columns::default(),
             tiles: Vec::new(),
             reach: Vec::new(),
@@ -171,9 +138,8 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
     pub(crate) fn bytes(&self) -> usize {
         let reals = [&self.tiles, &self.nodes, &self.impulses, &self.excess];
         size_of::<T>() * reals.map(Vec::capacity).into_iter().sum::<usize>()
-            + size_of::<Link<D>>() * (self.links.capacity() + self.links_by_tile.capacity())
+            + self.links.bytes()
             + size_of::<Reach<D>>() * self.reach.capacity()
-            + 4 * (self.links_of_block.capacity() + self.links_of_tile.capacity())
             + size_of::<[i32; D]>() * (self.blocks.capacity() + self.tile_blocks.capacity())
     }
 
@@ -210,7 +176,8 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         }
         self.tile_blocks.sort_unstable();
         self.tile_blocks.dedup();
-        let mut taken = vec![false; self.tile_blocks.len()];
+        self.claimed.clear();
+        self.claimed.resize(self.tile_blocks.len(), false);
         for group in groups {
             let mut tile = 0;
             for run in &mut group.runs {
@@ -218,10 +185,12 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
                     tile += 1;
                 }
                 run.tile = tile as u32;
-                run.first = !core::mem::replace(&mut taken[tile], true);
+                run.first = !core::mem::replace(&mut self.claimed[tile], true);
             }
         }
-        self.link(walls);
+        let period = &walls.period;
+        self.links
+            .find(&self.tile_blocks, self.tile_edge, period, &mut self.blocks);
         self.columns.find(&self.blocks, walls);
         // Stale numbers are never read: a tile's first scatter clears it, a block's update writes it.
         self.tiles
@@ -229,68 +198,6 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         self.reach.resize(self.tile_blocks.len(), Reach::NOTHING);
         self.nodes
             .resize(self.blocks.len() * self.block_len(), T::default());
-    }
-
-    /// Finds which blocks each tile covers.
-    fn link(&mut self, walls: &Walls<D>) {
-        let mut found: Vec<([i32; D], Link<D>)> =
-            Vec::with_capacity(self.tile_blocks.len() * 3_usize.pow(D as u32));
-        for (tile, &block) in self.tile_blocks.iter().enumerate() {
-            let pieces: [Vec<Piece>; D] = core::array::from_fn(|axis| {
-                axis_pieces::<D>(block[axis], self.tile_edge, walls.period[axis])
-            });
-            let mut choice = [0; D];
-            loop {
-                let piece: [Piece; D] = core::array::from_fn(|axis| pieces[axis][choice[axis]]);
-                found.push((
-                    piece.map(|p| p.block),
-                    Link {
-                        block: 0,
-                        tile: tile as u32,
-                        shift: piece.map(|p| p.shift),
-                        low: piece.map(|p| p.low),
-                        high: piece.map(|p| p.high),
-                    },
-                ));
-                let Some(axis) = (0..D)
-                    .rev()
-                    .find(|&axis| choice[axis] + 1 < pieces[axis].len())
-                else {
-                    break;
-                };
-                choice[axis] += 1;
-                choice[axis + 1..].fill(0);
-            }
-        }
-        // Within a block, ascending coordinates of the tile's block (or of its periodic image) are
-        // descending shifts.
-        found.sort_unstable_by_key(|(block, link)| (*block, link.shift.map(|shift| -shift)));
-
-        self.blocks.clear();
-        self.links.clear();
-        self.links_of_block.clear();
-        let mut of_tile = vec![0_u32; self.tile_blocks.len() + 1];
-        for (block, mut link) in found {
-            if self.blocks.last() != Some(&block) {
-                self.links_of_block.push(self.links.len() as u32);
-                self.blocks.push(block);
-            }
-            link.block = self.blocks.len() as u32 - 1;
-            of_tile[link.tile as usize + 1] += 1;
-            self.links.push(link);
-        }
-        self.links_of_block.push(self.links.len() as u32);
-        for tile in 1..of_tile.len() {
-            of_tile[tile] += of_tile[tile - 1];
-        }
-        let mut next = of_tile.clone();
-        self.links_by_tile.clone_from(&self.links);
-        for link in &self.links {
-            let place = &mut next[link.tile as usize];
-            self.links_by_tile[*place as usize] = *link;
-            *place += 1;
-        }
-        self.links_of_tile = of_tile;
     }
 
     /// Δt a of the forces that differ from node to node, at `time`; node 0 is at `origin`.
@@ -374,6 +281,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
             self.around(collider, walls, forces.dx, near);
         }
         self.columns.fold(
+            isa,
             &mut self.nodes,
             self.planes,
             walls,
@@ -457,8 +365,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
     #[inline(always)]
     fn gather_tiles<S: Simd>(&self, simd: S, block: usize, nodes: &mut [T]) {
         nodes.fill(T::default());
-        let range = self.links_of_block[block] as usize..self.links_of_block[block + 1] as usize;
-        for link in &self.links[range] {
+        for link in self.links.of_block(block) {
             let tile = &self.tiles[link.tile as usize * self.tile_len()..][..self.tile_len()];
             let reach = self.reach[link.tile as usize];
             for plane in 0..self.planes {
@@ -526,10 +433,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
     /// Asks memory for what [`Self::gather_tiles`] will read for `block`, if there is that block.
     #[inline(always)]
     fn ask_for_tiles(&self, block: usize) {
-        let Some(&[start, end]) = self.links_of_block.get(block..block + 2) else {
-            return;
-        };
-        for link in &self.links[start as usize..end as usize] {
+        for link in self.links.of_block(block) {
             let tile = link.tile as usize * self.tile_len();
             self.spans(link, self.reach[link.tile as usize], |_, span| {
                 prefetch(&self.tiles[tile + span.start..][..span.len()]);
@@ -537,15 +441,9 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         }
     }
 
-    /// The links of a tile, in order of blocks.
-    fn links_of(&self, tile: usize) -> &[Link<D>] {
-        &self.links_by_tile
-            [self.links_of_tile[tile] as usize..self.links_of_tile[tile + 1] as usize]
-    }
-
     /// Asks memory for what [`Self::load_tile`] will read for `tile`.
     pub(crate) fn ask_for_nodes(&self, tile: usize, reach: Reach<D>) {
-        for link in self.links_of(tile) {
+        for link in self.links.of_tile(tile) {
             let block = link.block as usize * self.block_len();
             self.spans(link, reach, |span, _| {
                 prefetch(&self.nodes[block + span.start..][..span.len()]);
@@ -654,7 +552,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
 
     #[inline(always)]
     fn copy_nodes<S: Simd>(&self, simd: S, tile: usize, reach: Reach<D>, out: &mut [T]) {
-        for link in self.links_of(tile) {
+        for link in self.links.of_tile(tile) {
             let block = &self.nodes[link.block as usize * self.block_len()..][..self.block_len()];
             for plane in 0..self.planes {
                 let from = &block[plane * BLOCK_NODES * QUAD..];

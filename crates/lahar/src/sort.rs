@@ -70,8 +70,7 @@ impl<T: Lanes, const D: usize> Sorter<T, D> {
         offset: f64,
     ) -> Escaped {
         let used = self.cut(&group.runs, group.len());
-        self.keys.clear();
-        self.keys.resize(group.len(), GONE);
+        self.keys.resize(group.len(), GONE); // each row's is written anew
         let old = Old {
             runs: &group.runs,
             walls,
@@ -226,6 +225,7 @@ impl<const D: usize> Old<'_, D> {
                 let at = row - piece.rows.start;
                 let mut u: [T; D] = core::array::from_fn(|axis| positions[axis][at]);
                 if has_open && has_left(&self.cells(run.block, u), self.walls) {
+                    keys[at] = GONE;
                     continue;
                 }
                 let stays = u.iter().all(|&u| -half <= u && u < half);
@@ -303,8 +303,7 @@ fn permute<U: Copy + Default + Send + Sync>(
     column: &mut Vec<U>,
     buffer: &mut Vec<U>,
 ) {
-    buffer.clear();
-    buffer.resize(source.len(), U::default());
+    buffer.resize(source.len(), U::default()); // what it holds is replaced
     let from = &column[..];
     crate::parallel::for_chunks(
         buffer,

@@ -28,24 +28,29 @@ pub(crate) struct ColumnNode<T, const D: usize> {
     pub(crate) before: Vector<T, D>,
 }
 
-impl<T: Scalar, const D: usize> Column<T, D> {
-    /// The mean of the node inside and the image of the one beyond, weighted by mass.
-    #[inline(always)]
-    fn folded(
-        &self,
-        of: impl Fn(&ColumnNode<T, D>) -> Vector<T, D>,
-        image: impl Fn(Vector<T, D>) -> Vector<T, D>,
-    ) -> Vector<T, D> {
-        let (near, far) = (&self.inside, &self.beyond);
-        let share = far.mass / (near.mass + far.mass);
-        let own = of(near);
-        own + (image(of(far)) - own) * share
-    }
+/// The mean of `own` at a node of mass `near` and of `image`, the mirror image of what a node of mass `far`
+/// has, weighted by mass.
+#[inline(always)]
+fn folded<R: Real, const D: usize>(
+    near: R,
+    own: Vector<R, D>,
+    far: R,
+    image: Vector<R, D>,
+) -> Vector<R, D> {
+    let share = far / (near + far);
+    own + (image - own) * share
 }
 
-/// `v` with the sign of its component along `axis` changed: its image in a mirror across that axis.
+/// `v` in a mirror across `axis`: the sign of that component changed, or of all if the wall is `sticky`.
 #[inline(always)]
-fn mirrored<T: Scalar, const D: usize>(mut v: Vector<T, D>, axis: usize) -> Vector<T, D> {
+fn mirrored<R: Real, const D: usize>(
+    mut v: Vector<R, D>,
+    axis: usize,
+    sticky: bool,
+) -> Vector<R, D> {
+    if sticky {
+        return -v;
+    }
     v[axis] = -v[axis];
     v
 }
@@ -63,43 +68,43 @@ impl Contact {
     /// Along the wall, `Sticky` mirrors velocities with the other sign, so that they are zero on the
     /// plane; friction takes at most μ times the wall's impulse from the node on the plane.
     ///
-    /// Whether it has changed anything.
+    /// Where the wall acts; elsewhere (lanes are columns of their own) what `column` holds then means nothing.
     #[inline(always)]
-    pub(crate) fn fold<T: Scalar, const D: usize>(
+    pub(crate) fn fold<R: Real, const D: usize>(
         self,
-        column: &mut Column<T, D>,
+        column: &mut Column<R, D>,
         axis: usize,
         inward: f64,
-    ) -> bool {
-        let zero = T::default();
-        let (far, middle, near) = (&column.beyond, &column.plane, &column.inside);
+    ) -> R::Mask {
+        let (far, middle, near) = (column.beyond, column.plane, column.inside);
+        let zero = near.mass.zero();
         let together = near.mass + far.mass;
-        if middle.mass <= zero || together <= zero {
-            return false;
-        }
+        let there = !(middle.mass.le(zero) | together.le(zero));
         let reduced = near.mass * (far.mass / together);
         let impulse = (middle.mass * middle.velocity[axis]
             + (reduced + reduced) * (near.velocity[axis] + far.velocity[axis]))
-            * T::from_f64(-inward);
-        let friction = match self {
-            Self::Open => return false,
-            Self::Separate { .. } if impulse <= zero => return false,
-            Self::Sticky => 0.0,
-            Self::Slip { friction } | Self::Separate { friction } => friction,
+            * zero.lit(-inward);
+        let acts = match self {
+            Self::Open => there & !there,
+            Self::Separate { .. } => there & !impulse.le(zero),
+            Self::Sticky | Self::Slip { .. } => there,
         };
 
         let sticky = self == Self::Sticky;
-        let image = |v: Vector<T, D>| if sticky { -v } else { mirrored(v, axis) };
-        let velocity = column.folded(|node| node.velocity, image);
-        let before = column.folded(|node| node.before, image);
+        let image = mirrored(far.velocity, axis, sticky);
+        let velocity = folded(near.mass, near.velocity, far.mass, image);
+        let image = mirrored(far.before, axis, sticky);
+        let before = folded(near.mass, near.before, far.mass, image);
         let plane = &mut column.plane;
-        if sticky {
-            plane.velocity = Vector([zero; D]);
-        } else {
-            plane.velocity[axis] = zero;
-            if friction > 0.0 {
-                let taken = T::from_f64(friction) * impulse.max(zero) / plane.mass;
-                plane.velocity = slowed(plane.velocity, taken);
+        match self {
+            Self::Sticky => plane.velocity = Vector([zero; D]),
+            Self::Open => {}
+            Self::Slip { friction } | Self::Separate { friction } => {
+                plane.velocity[axis] = zero;
+                if friction > 0.0 {
+                    let taken = zero.lit(friction) * impulse.max(zero) / plane.mass;
+                    plane.velocity = slowed(plane.velocity, taken);
+                }
             }
         }
         plane.before[axis] = zero;
@@ -110,10 +115,10 @@ impl Contact {
         };
         column.beyond = ColumnNode {
             mass: together,
-            velocity: image(velocity),
-            before: image(before),
+            velocity: mirrored(velocity, axis, sticky),
+            before: mirrored(before, axis, sticky),
         };
-        true
+        acts
     }
 
     /// The velocity of a node inside a wall across `axis`, whose material side is towards
@@ -148,12 +153,7 @@ impl Contact {
 
 /// `velocity` made shorter by `taken` \[m/s\], or zero if it is not that long.
 #[inline(always)]
-pub(crate) fn slowed<T: Scalar, const D: usize>(velocity: Vector<T, D>, taken: T) -> Vector<T, D> {
+pub(crate) fn slowed<R: Real, const D: usize>(velocity: Vector<R, D>, taken: R) -> Vector<R, D> {
     let speed = velocity.norm();
-    let kept = if speed > taken {
-        (speed - taken) / speed
-    } else {
-        T::default()
-    };
-    velocity * kept
+    velocity * R::select(speed.gt(taken), (speed - taken) / speed, taken.zero())
 }

@@ -1,33 +1,50 @@
 //! The nodes at walls on their plane, and what the walls do to them.
 
-use super::{BLOCK_NODES, QUAD, axis_index};
+use super::{BLOCK_NODES, QUAD};
 use crate::boundary::contact::{Column, ColumnNode};
 use crate::boundary::impulse::Taken;
 use crate::boundary::walls::{Plane, Walls};
-use crate::math::{Lanes, Vector};
+use crate::dispatch::on_level;
+use crate::material::IsaToken;
+use crate::math::{Lanes, Mask, Real, Vector};
 use crate::store::block_edge;
+use fearless_simd::Simd;
 
-/// A node by its place among all blocks' nodes.
-#[derive(Clone, Copy, Debug)]
-struct NodePlace(u32);
+/// The most columns of a wall that pass a block: those of 3D.
+const MOST_COLUMNS: usize = columns_a_face(3);
 
-/// A node on a wall and its neighbours across.
+/// Columns of a wall that pass a block: 8 in 2D, 16 in 3D.
+const fn columns_a_face(dimension: usize) -> usize {
+    BLOCK_NODES / block_edge(dimension)
+}
+
+/// A number a column.
+type OfColumns<T> = [T; MOST_COLUMNS];
+
+/// The columns of a wall that pass one block: its nodes on the plane, ascending, and their neighbours across.
 #[derive(Clone, Copy, Debug)]
-struct Places<const D: usize> {
-    /// Beyond the wall, on its plane, inside; none where there is no block.
-    across: [Option<NodePlace>; 3],
-    /// The index on each axis of the node on the plane.
-    node: [i32; D],
+struct Face<const D: usize> {
+    /// The wall's.
+    axis: usize,
+    /// Of the nodes beyond the wall, on its plane, inside: their block, if there is one, and their index in
+    /// it across the wall.
+    across: [(Option<u32>, u8); 3],
+    /// The index on each axis of the first node on the plane.
+    first: [i32; D],
+    /// Where masses are kept, if a wall that acts before this one may change them.
+    kept: Option<u32>,
 }
 
 /// For each of [`Walls::planes`], its columns of nodes in the blocks that there are.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Columns<const D: usize> {
-    walls: Vec<Vec<Places<D>>>,
+    walls: Vec<Vec<Face<D>>>,
     /// The normal impulse that each column gave to its wall in the last update \[kg m/s\].
     pressed: Vec<Vec<f64>>,
-    /// The masses of all columns' nodes, before the first wall has acted \[kg\].
-    masses: Vec<[f64; 3]>,
+    /// Of faces in corners, the masses of their nodes before the first wall has acted \[kg\].
+    masses: Vec<[OfColumns<f64>; 3]>,
+    /// By block, whether a wall changes nodes of it; while faces are found.
+    changed: Vec<bool>,
 }
 
 impl<const D: usize> Columns<D> {
@@ -35,21 +52,38 @@ impl<const D: usize> Columns<D> {
     pub(super) fn find(&mut self, blocks: &[[i32; D]], walls: &Walls<D>) {
         let edge = block_edge(D) as i64;
         self.walls.resize(walls.planes.len(), Vec::new());
-        for (columns, wall) in self.walls.iter_mut().zip(&walls.planes) {
-            columns.clear();
+        self.pressed.resize(walls.planes.len(), Vec::new());
+        self.changed.clear();
+        self.changed.resize(blocks.len(), false);
+        let mut kept = 0;
+        let of_walls = self.walls.iter_mut().zip(&mut self.pressed);
+        for ((faces, pressed), wall) in of_walls.zip(&walls.planes) {
+            faces.clear();
             let of_wall = wall.node.div_euclid(edge);
             for block in blocks {
-                if i64::from(block[wall.axis]) == of_wall {
-                    push_columns(*block, blocks, wall, columns);
+                if i64::from(block[wall.axis]) != of_wall {
+                    continue;
                 }
+                let mut face = Face::of(*block, blocks, wall);
+                if face.blocks().any(|block| self.changed[block]) {
+                    face.kept = Some(kept);
+                    kept += 1;
+                }
+                faces.push(face);
             }
+            for block in faces.iter().flat_map(Face::blocks) {
+                self.changed[block] = true;
+            }
+            pressed.resize(faces.len() * columns_a_face(D), 0.0);
         }
+        self.masses.resize(kept as usize, [[0.0; MOST_COLUMNS]; 3]);
     }
 
     /// Lets the walls act on the velocities in `nodes`, of `planes` planes. Adds what they take from
     /// particles that keep `blend` of their own velocities to `taken`, by [`Plane::side`].
     pub(super) fn fold<T: Lanes>(
         &mut self,
+        isa: IsaToken,
         nodes: &mut [T],
         planes: usize,
         walls: &Walls<D>,
@@ -59,183 +93,349 @@ impl<const D: usize> Columns<D> {
         let _flush = crate::float_mode::FlushToZero::enter();
         // Folding changes masses, and in corners a second wall finds them changed; particles have the
         // masses that they brought.
-        self.masses.clear();
-        for places in self.walls.iter().flatten() {
-            self.masses.push(places.across.map(|place| {
-                place.map_or(0.0, |place| nodes[quad_at(place, planes) + 3].to_f64())
-            }));
-        }
-        let mut masses = self.masses.iter();
-        self.pressed.resize(walls.planes.len(), Vec::new());
-        let pressed = self.pressed.iter_mut();
-        for ((columns, wall), pressed) in self.walls.iter().zip(&walls.planes).zip(pressed) {
-            pressed.clear();
-            pressed.resize(columns.len(), 0.0);
-            let taken = &mut taken[wall.side()];
-            for ((places, masses), pressed) in columns.iter().zip(&mut masses).zip(pressed) {
-                let [beyond, plane, inside] = places
-                    .across
-                    .map(|place| read::<T, D>(nodes, planes, place));
-                if plane.mass <= T::default() {
-                    continue;
-                }
-                let free = [beyond, plane, inside];
-                let mut column = Column {
-                    beyond,
-                    plane,
-                    inside,
-                };
-                let inward = f64::from(wall.inward);
-                if !wall.contact.fold(&mut column, wall.axis, inward) {
-                    continue;
-                }
-                let folded = [column.beyond, column.plane, column.inside];
-                for (place, node) in places.across.iter().zip(&folded) {
-                    write(nodes, planes, *place, node);
-                }
-                for (k, step) in (-1..=1).enumerate() {
-                    let change = Vector::from_fn(|axis| {
-                        (folded[k].velocity[axis] - free[k].velocity[axis]).to_f64()
-                            - blend * (folded[k].before[axis] - free[k].before[axis]).to_f64()
-                    });
-                    let mut at = places.node.map(f64::from);
-                    at[wall.axis] += f64::from(wall.inward) * f64::from(step);
-                    taken.add(at, change * -masses[k]); // (13)
-                    *pressed += change[wall.axis] * masses[k] * inward;
-                }
+        for face in self.walls.iter().flatten() {
+            if let Some(kept) = face.kept {
+                let masses = &mut self.masses[kept as usize];
+                face.for_quads(planes, |column, side, quad| {
+                    masses[side][column] = nodes[quad + 3].to_f64();
+                });
             }
         }
+        let of_walls = self.walls.iter().zip(&mut self.pressed);
+        for ((faces, pressed), wall) in of_walls.zip(&walls.planes) {
+            let mut fold = Fold::new(wall, planes, blend);
+            on_level!(isa.0, simd => {
+                let pressed = pressed.chunks_exact_mut(columns_a_face(D));
+                for (face, pressed) in faces.iter().zip(pressed) {
+                    let kept = face.kept.map(|kept| &self.masses[kept as usize]);
+                    fold.face(simd, face, nodes, kept, pressed);
+                }
+            });
+            fold.add_to(&mut taken[wall.side()]);
+        }
     }
-}
 
-impl<const D: usize> Columns<D> {
     /// The nodes on wall number `wall` of [`Walls::planes`], by index, and the normal impulse that each
     /// took in the last update \[kg m/s\].
     pub(super) fn pressed(&self, wall: usize) -> impl Iterator<Item = ([i32; D], f64)> {
-        let nodes = self.walls[wall].iter().map(|places| places.node);
+        let nodes = self.walls[wall]
+            .iter()
+            .flat_map(|face| (0..columns_a_face(D)).map(|column| face.node(column)));
         nodes.zip(self.pressed[wall].iter().copied())
     }
 
     /// Adds to the volumes that nodes near walls hold those of the mirror images.
     pub(super) fn mirror_volumes<T: Lanes>(&self, nodes: &mut [T], planes: usize) {
-        for columns in &self.walls {
-            for places in columns {
-                let at = places
-                    .across
-                    .map(|place| place.map(|place| quad_at(place, planes)));
-                for lane in 0..QUAD {
-                    let read = |at: Option<usize>| at.map_or(T::default(), |at| nodes[at + lane]);
+        for face in self.walls.iter().flatten() {
+            for column in 0..columns_a_face(D) {
+                let at: [_; 3] = core::array::from_fn(|side| face.quad_at(column, side, planes));
+                for number in 0..QUAD {
+                    let read = |at: Option<usize>| at.map_or(T::default(), |at| nodes[at + number]);
                     let [beyond, plane, inside] = at.map(read);
                     let mirrored = [beyond + inside, plane + plane, beyond + inside];
                     for (at, sum) in at.into_iter().zip(mirrored) {
                         if let Some(at) = at {
-                            nodes[at + lane] = sum;
+                            nodes[at + number] = sum;
                         }
                     }
                 }
             }
         }
     }
-}
 
-impl<const D: usize> Columns<D> {
-    /// Gives the nodes beyond walls number `lane` of the quads of their images.
-    pub(super) fn mirror_answers<T: Lanes>(&self, nodes: &mut [T], planes: usize, lane: usize) {
-        for places in self.walls.iter().flatten() {
-            let [beyond, _, inside] = places.across;
-            if let (Some(beyond), Some(inside)) = (beyond, inside) {
-                nodes[quad_at(beyond, planes) + lane] = nodes[quad_at(inside, planes) + lane];
+    /// Gives the nodes beyond walls number `number` of the quads of their images.
+    pub(super) fn mirror_answers<T: Lanes>(&self, nodes: &mut [T], planes: usize, number: usize) {
+        for face in self.walls.iter().flatten() {
+            for column in 0..columns_a_face(D) {
+                let [beyond, inside] = [0, 2].map(|side| face.quad_at(column, side, planes));
+                if let (Some(beyond), Some(inside)) = (beyond, inside) {
+                    nodes[beyond + number] = nodes[inside + number];
+                }
             }
         }
     }
 }
 
-/// The columns of `wall` through `block`, which its plane passes.
-fn push_columns<const D: usize>(
-    block: [i32; D],
-    blocks: &[[i32; D]],
-    wall: &Plane,
-    columns: &mut Vec<Places<D>>,
-) {
-    let edge = block_edge(D) as i64;
-    let inward = i64::from(wall.inward);
-    // Of the three nodes: which block has them, and their index in it on the wall's axis.
-    let across = [-inward, 0, inward].map(|step| {
-        let node = wall.node + step;
-        let mut owner = block;
-        owner[wall.axis] = node.div_euclid(edge) as i32;
-        (
-            blocks.binary_search(&owner).ok(),
-            node.rem_euclid(edge) as usize,
-        )
-    });
-    let on_plane = across[1].1;
-    let stride = (edge as usize).pow((D - 1 - wall.axis) as u32);
-    for index in 0..BLOCK_NODES {
-        if axis_index::<D>(index, wall.axis) == on_plane {
-            let foot = index - on_plane * stride;
-            columns.push(Places {
-                across: across.map(|(block, local)| {
-                    let node = foot + local * stride;
-                    block.map(|block| NodePlace((block * BLOCK_NODES + node) as u32))
-                }),
-                node: core::array::from_fn(|axis| {
-                    block[axis] * edge as i32 + axis_index::<D>(index, axis) as i32
-                }),
-            });
+impl<const D: usize> Face<D> {
+    /// The columns of `wall` through `block`, which its plane passes.
+    fn of(block: [i32; D], blocks: &[[i32; D]], wall: &Plane) -> Self {
+        let edge = block_edge(D) as i64;
+        let across = [-1, 0, 1].map(|step| {
+            let node = wall.node + step * i64::from(wall.inward);
+            let mut owner = block;
+            owner[wall.axis] = node.div_euclid(edge) as i32;
+            let owner = blocks.binary_search(&owner).ok();
+            (owner.map(|block| block as u32), node.rem_euclid(edge) as u8)
+        });
+        let mut first = block.map(|index| index * edge as i32);
+        first[wall.axis] = wall.node as i32;
+        Self {
+            axis: wall.axis,
+            across,
+            first,
+            kept: None,
+        }
+    }
+
+    /// The blocks that its nodes are in.
+    fn blocks(&self) -> impl Iterator<Item = usize> {
+        let blocks = self.across.into_iter().filter_map(|(block, _)| block);
+        blocks.map(|block| block as usize)
+    }
+
+    /// Nodes that lie side by side in storage; columns come in runs of so many.
+    #[inline(always)]
+    fn run(&self) -> usize {
+        block_edge(D).pow((D - 1 - self.axis) as u32)
+    }
+
+    /// Where the quads of a run of columns are, from column `column` on, in plane 0: the nodes `side` steps
+    /// further inside than those beyond the wall.
+    #[inline(always)]
+    fn quad_at(&self, column: usize, side: usize, planes: usize) -> Option<usize> {
+        let (block, local) = self.across[side];
+        let run = self.run();
+        let node = (column / run * block_edge(D) + usize::from(local)) * run + column % run;
+        Some((block? as usize * BLOCK_NODES * planes + node) * QUAD)
+    }
+
+    /// Calls `f(column, side, place)` for the quads of all nodes that there are, in plane 0.
+    fn for_quads(&self, planes: usize, mut f: impl FnMut(usize, usize, usize)) {
+        for side in 0..3 {
+            for column in 0..columns_a_face(D) {
+                if let Some(quad) = self.quad_at(column, side, planes) {
+                    f(column, side, quad);
+                }
+            }
+        }
+    }
+
+    /// The index of a column's node on the plane.
+    fn node(&self, column: usize) -> [i32; D] {
+        let local = local::<D>(self.axis, column);
+        core::array::from_fn(|axis| self.first[axis] + local[axis])
+    }
+}
+
+/// Where the foot of a column is among those of its face: 0 on the wall's axis.
+fn local<const D: usize>(wall_axis: usize, column: usize) -> [i32; D] {
+    let edge = block_edge(D);
+    let mut left = column;
+    let mut local = [0; D];
+    for axis in (0..D).rev().filter(|&axis| axis != wall_axis) {
+        local[axis] = (left % edge) as i32;
+        left /= edge;
+    }
+    local
+}
+
+/// A wall that acts on its faces, one after the other.
+struct Fold<'a, const D: usize> {
+    wall: &'a Plane,
+    planes: usize,
+    blend: f64,
+    /// By column of a face, where its foot is among them.
+    local: [OfColumns<f64>; D],
+    /// What the wall takes, each column of a face for itself.
+    impulse: [OfColumns<f64>; D],
+    angular: [OfColumns<f64>; 3],
+}
+
+impl<'a, const D: usize> Fold<'a, D> {
+    fn new(wall: &'a Plane, planes: usize, blend: f64) -> Self {
+        let mut of_columns = [[0.0; MOST_COLUMNS]; D];
+        for column in 0..columns_a_face(D) {
+            let local = local::<D>(wall.axis, column);
+            for axis in 0..D {
+                of_columns[axis][column] = f64::from(local[axis]);
+            }
+        }
+        Self {
+            wall,
+            planes,
+            blend,
+            local: of_columns,
+            impulse: [[0.0; MOST_COLUMNS]; D],
+            angular: [[0.0; MOST_COLUMNS]; 3],
+        }
+    }
+
+    /// Adds what has been taken to `taken`.
+    fn add_to(&self, taken: &mut Taken<D>) {
+        for axis in 0..D {
+            taken.impulse[axis] += self.impulse[axis].iter().sum::<f64>();
+        }
+        for axis in 0..3 {
+            taken.angular[axis] += self.angular[axis].iter().sum::<f64>();
+        }
+    }
+
+    /// Lets the wall act on the columns of `face`, whose particles brought the masses `kept`, or those that
+    /// the nodes have. Writes the normal impulse of each to `pressed`.
+    #[inline(always)]
+    fn face<T: Lanes, S: Simd>(
+        &mut self,
+        simd: S,
+        face: &Face<D>,
+        nodes: &mut [T],
+        kept: Option<&[OfColumns<f64>; 3]>,
+        pressed: &mut [f64],
+    ) {
+        pressed.fill(0.0);
+        let zero = T::broadcast(simd, T::default());
+        let run = face.run();
+        let plane_len = BLOCK_NODES * QUAD;
+        let mut quads = [[[T::default(); MOST_COLUMNS * QUAD]; 2]; 3];
+        for side in 0..3 {
+            for column in (0..columns_a_face(D)).step_by(run) {
+                let Some(place) = face.quad_at(column, side, self.planes) else {
+                    break;
+                };
+                for plane in 0..self.planes {
+                    let to = &mut quads[side][plane][column * QUAD..][..run * QUAD];
+                    T::copy_quads(simd, to, &nodes[place + plane * plane_len..][..run * QUAD]);
+                }
+            }
+        }
+
+        // Of each side: the masses that particles brought, and what the wall changes of velocities.
+        let mut brought = [[0.0; MOST_COLUMNS]; 3];
+        let mut change = [[[0.0; MOST_COLUMNS]; D]; 3];
+        let mut acted = false;
+        for first in (0..columns_a_face(D)).step_by(T::WIDTH) {
+            let at = first * QUAD;
+            let mut loaded = [[[zero; QUAD]; 2]; 3];
+            let mut free = [ColumnNode::<_, D>::of([zero; QUAD], [zero; QUAD]); 3];
+            for side in 0..3 {
+                for plane in 0..self.planes {
+                    loaded[side][plane] = T::load_quads(simd, &quads[side][plane][at..]);
+                }
+                free[side] = ColumnNode::of(loaded[side][0], loaded[side][1]);
+                add_difference::<T, S>(1.0, free[side].mass, zero, &mut brought[side][first..]);
+            }
+            let mut column = Column {
+                beyond: free[0],
+                plane: free[1],
+                inside: free[2],
+            };
+            let inward = f64::from(self.wall.inward);
+            let acts = self.wall.contact.fold(&mut column, self.wall.axis, inward);
+            if !acts.any() {
+                continue;
+            }
+            acted = true;
+            let folded = [column.beyond, column.plane, column.inside];
+            for side in 0..3 {
+                let (free, folded) = (free[side], folded[side]);
+                let [velocities, changes] = &mut loaded[side];
+                for axis in 0..D {
+                    let (was, now) = (free.velocity[axis], folded.velocity[axis]);
+                    let (was_before, now_before) = (free.before[axis], folded.before[axis]);
+                    changes[axis] = Real::select(acts, now - now_before, changes[axis]);
+                    let now = Real::select(acts, now, was);
+                    velocities[axis] = now;
+                    let change = &mut change[side][axis][first..];
+                    add_difference::<T, S>(1.0, now, was, change);
+                    if self.blend != 0.0 {
+                        let now_before = Real::select(acts, now_before, was_before);
+                        add_difference::<T, S>(-self.blend, now_before, was_before, change);
+                    }
+                }
+                velocities[3] = Real::select(acts, folded.mass, free.mass);
+                for plane in 0..self.planes {
+                    T::store_quads::<S>(loaded[side][plane], &mut quads[side][plane][at..]);
+                }
+            }
+        }
+        if !acted {
+            return;
+        }
+
+        for side in 0..3 {
+            for column in (0..columns_a_face(D)).step_by(run) {
+                let Some(place) = face.quad_at(column, side, self.planes) else {
+                    break;
+                };
+                for plane in 0..self.planes {
+                    let from = &quads[side][plane][column * QUAD..][..run * QUAD];
+                    T::copy_quads(
+                        simd,
+                        &mut nodes[place + plane * plane_len..][..run * QUAD],
+                        from,
+                    );
+                }
+            }
+        }
+        let brought = kept.unwrap_or(&brought);
+        for side in 0..3 {
+            self.take(face, side, &brought[side], &change[side], pressed);
+        }
+    }
+
+    /// Adds up what the wall takes by changing the velocities of the nodes on one side by `change`, if their
+    /// particles brought the masses `brought`.
+    #[inline(always)]
+    fn take(
+        &mut self,
+        face: &Face<D>,
+        side: usize,
+        brought: &OfColumns<f64>,
+        change: &[OfColumns<f64>; D],
+        pressed: &mut [f64],
+    ) {
+        let (wall_axis, inward) = (self.wall.axis, f64::from(self.wall.inward));
+        let mut impulse = [[0.0; MOST_COLUMNS]; D];
+        let mut at = [[0.0; MOST_COLUMNS]; D];
+        for axis in 0..D {
+            let mut first = f64::from(face.first[axis]);
+            if axis == wall_axis {
+                first += inward * (side as f64 - 1.0);
+            }
+            for column in 0..MOST_COLUMNS {
+                impulse[axis][column] = change[axis][column] * -brought[column]; // (13)
+                self.impulse[axis][column] += impulse[axis][column];
+                at[axis][column] = first + self.local[axis][column];
+            }
+        }
+        for (pressed, impulse) in pressed.iter_mut().zip(&impulse[wall_axis]) {
+            *pressed -= impulse * inward;
+        }
+        for axis in 0..3 {
+            let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+            if i < D && j < D {
+                for column in 0..MOST_COLUMNS {
+                    self.angular[axis][column] +=
+                        at[i][column] * impulse[j][column] - at[j][column] * impulse[i][column];
+                }
+            }
         }
     }
 }
 
-/// Where a node's quad is in its plane 0.
-#[inline(always)]
-fn quad_at(place: NodePlace, planes: usize) -> usize {
-    let (block, node) = (
-        place.0 as usize / BLOCK_NODES,
-        place.0 as usize % BLOCK_NODES,
-    );
-    (block * BLOCK_NODES * planes + node) * QUAD
-}
-
-#[inline(always)]
-fn read<T: Lanes, const D: usize>(
-    nodes: &[T],
-    planes: usize,
-    place: Option<NodePlace>,
-) -> ColumnNode<T, D> {
-    let zero = T::default();
-    let mut node = ColumnNode {
-        mass: zero,
-        velocity: Vector([zero; D]),
-        before: Vector([zero; D]),
-    };
-    let Some(place) = place else { return node };
-    let at = quad_at(place, planes);
-    node.mass = nodes[at + 3];
-    for axis in 0..D {
-        node.velocity[axis] = nodes[at + axis];
-        if planes == 2 {
-            let change = nodes[at + BLOCK_NODES * QUAD + axis];
-            node.before[axis] = node.velocity[axis] - change;
+impl<R: Real, const D: usize> ColumnNode<R, D> {
+    /// From what nodes hold: velocity and mass; and the change of velocity by forces, or zero.
+    #[inline(always)]
+    fn of(velocity: [R; QUAD], change: [R; QUAD]) -> Self {
+        let mut node = Self {
+            mass: velocity[3],
+            velocity: Vector([velocity[0]; D]),
+            before: Vector([velocity[0]; D]),
+        };
+        for axis in 0..D {
+            node.velocity[axis] = velocity[axis];
+            node.before[axis] = velocity[axis] - change[axis];
         }
+        node
     }
-    node
 }
 
+/// `sum += scale (a - b)`
 #[inline(always)]
-fn write<T: Lanes, const D: usize>(
-    nodes: &mut [T],
-    planes: usize,
-    place: Option<NodePlace>,
-    node: &ColumnNode<T, D>,
-) {
-    let Some(place) = place else { return };
-    let at = quad_at(place, planes);
-    nodes[at + 3] = node.mass;
-    for axis in 0..D {
-        nodes[at + axis] = node.velocity[axis];
-        if planes == 2 {
-            nodes[at + BLOCK_NODES * QUAD + axis] = node.velocity[axis] - node.before[axis];
-        }
+fn add_difference<T: Lanes, S: Simd>(scale: f64, a: T::Of<S>, b: T::Of<S>, sum: &mut [f64]) {
+    let (mut of_a, mut of_b) = ([T::default(); MOST_COLUMNS], [T::default(); MOST_COLUMNS]);
+    T::store(a, &mut of_a);
+    T::store(b, &mut of_b);
+    for ((sum, a), b) in sum.iter_mut().zip(&of_a).zip(&of_b).take(T::WIDTH) {
+        *sum += scale * (a.to_f64() - b.to_f64());
     }
 }

@@ -30,29 +30,29 @@ pub(super) fn axis_pieces<const D: usize>(
     block: i32,
     tile_edge: usize,
     period: Option<i64>,
-) -> Vec<Piece> {
+    pieces: &mut Vec<Piece>,
+) {
     let edge = block_edge(D) as i64;
     let first = edge * i64::from(block) - 1;
-    let mut pieces: Vec<Piece> = Vec::with_capacity(4);
-    for tile_node in 0..tile_edge as i64 {
-        let mut node = first + tile_node;
+    pieces.clear();
+    let mut done = 0; // nodes of the tile
+    while done < tile_edge as i64 {
+        let mut node = first + done;
+        let mut left = tile_edge as i64 - done;
         if let Some(period) = period {
             node = node.rem_euclid(period);
+            left = left.min(period - node);
         }
-        let in_block = node.div_euclid(edge) as i32;
         let local = node.rem_euclid(edge);
-        let shift = (tile_node - local) as i16;
-        match pieces.last_mut() {
-            Some(last) if last.block == in_block && last.shift == shift => last.high += 1,
-            _ => pieces.push(Piece {
-                block: in_block,
-                shift,
-                low: local as u8,
-                high: local as u8 + 1,
-            }),
-        }
+        let len = left.min(edge - local);
+        pieces.push(Piece {
+            block: node.div_euclid(edge) as i32,
+            shift: (done - local) as i16,
+            low: local as u8,
+            high: (local + len) as u8,
+        });
+        done += len;
     }
-    pieces
 }
 
 /// The nodes of a tile that its particles reach: `low ≤ node < high` on each axis. The others hold
