@@ -1,7 +1,7 @@
 //! A few particles at a time, read and written by whole registers.
 
 use crate::math::{Lanes, Real};
-use crate::store::MOST_COLUMNS;
+use crate::store::{ColumnsMut, MOST_COLUMNS};
 use fearless_simd::Simd;
 
 /// Particles worked on between two looks at the tile.
@@ -21,6 +21,12 @@ pub(crate) struct Chunk<'a, T> {
     pub(crate) count: usize,
 }
 
+/// Whether a whole chunk begins with row `start`.
+#[inline(always)]
+pub(crate) fn is_whole<T>(columns: &[&[T]], start: usize) -> bool {
+    columns.iter().all(|column| start + CHUNK <= column.len())
+}
+
 /// Room for the rows of chunks that are not full.
 #[repr(align(64))]
 pub(crate) struct Padded<T>([Rows<T>; MOST_COLUMNS]);
@@ -30,57 +36,63 @@ impl<T: Copy + Default> Padded<T> {
         Self([[T::default(); CHUNK]; MOST_COLUMNS])
     }
 
-    /// What `work` makes of rows `start .. start + count` of `columns`, `count` from 1 to [`CHUNK`]; what comes
-    /// after them in the chunk are other rows, or the last one again.
-    #[inline(always)]
-    pub(crate) fn with<R>(
+    /// Copies of rows `start .. start + count` of `columns`, `count` from 1 to [`CHUNK`], each with the last one
+    /// again behind them; empty rows behind the columns.
+    pub(crate) fn copy(
         &mut self,
         columns: &[&[T]],
         start: usize,
         count: usize,
-        work: impl FnOnce(Chunk<'_, T>) -> R,
-    ) -> R {
-        if columns.iter().all(|column| start + CHUNK <= column.len()) {
-            return work(Chunk {
-                columns,
-                start,
-                count,
-            });
-        }
+    ) -> [&[T]; MOST_COLUMNS] {
         let mut rows = [&[][..]; MOST_COLUMNS];
         for ((rows, padded), column) in rows.iter_mut().zip(&mut self.0).zip(columns) {
             pad(padded, &column[start..start + count]);
             *rows = padded;
         }
-        work(Chunk {
-            columns: &rows[..columns.len()],
-            start: 0,
-            count,
-        })
+        rows
     }
 
-    /// The same for `work` that changes its columns, given with the row where the chunk begins; after rows
-    /// `start .. start + count` comes the last one again.
-    #[inline(always)]
-    pub(crate) fn with_mut<R>(
-        &mut self,
-        columns: &mut [&mut [T]],
-        start: usize,
-        count: usize,
-        work: impl FnOnce(&mut [&mut [T]], usize) -> R,
-    ) -> R {
-        if count == CHUNK {
-            return work(columns, start);
+    /// All of the room, as columns of a chunk each.
+    pub(crate) fn columns(&mut self) -> ColumnsMut<'_, T> {
+        let mut rows = self.0.iter_mut();
+        ColumnsMut {
+            slices: core::array::from_fn(|_| rows.next().map_or(&mut [][..], |rows| &mut rows[..])),
         }
-        let mut rows = self.0.each_mut().map(|rows| &mut rows[..]);
-        for (rows, column) in rows.iter_mut().zip(&*columns) {
-            pad(rows, &column[start..start + count]);
+    }
+}
+
+/// Where to work on rows `start .. start + count` of the first `used` columns, and the row where they begin
+/// there: in `columns` if the chunk is full, else in `copies`, with the last one again behind them.
+#[inline(always)]
+pub(crate) fn open_chunk<'a, 'c, T: Copy>(
+    columns: &'a mut ColumnsMut<'c, T>,
+    copies: &'a mut ColumnsMut<'c, T>,
+    used: usize,
+    start: usize,
+    count: usize,
+) -> (&'a mut ColumnsMut<'c, T>, usize) {
+    if count == CHUNK {
+        return (columns, start);
+    }
+    for (copy, column) in copies.slices.iter_mut().zip(&columns.slices[..used]) {
+        pad(copy, &column[start..start + count]);
+    }
+    (copies, 0)
+}
+
+/// Copies back what was changed in a chunk that [`open_chunk`] has given.
+#[inline(always)]
+pub(crate) fn close_chunk<T: Copy>(
+    columns: &mut ColumnsMut<'_, T>,
+    copies: &ColumnsMut<'_, T>,
+    used: usize,
+    start: usize,
+    count: usize,
+) {
+    if count < CHUNK {
+        for (column, copy) in columns.slices.iter_mut().zip(&copies.slices[..used]) {
+            column[start..start + count].copy_from_slice(&copy[..count]);
         }
-        let result = work(&mut rows[..columns.len()], 0);
-        for (rows, column) in rows.iter().zip(columns) {
-            column[start..start + count].copy_from_slice(&rows[..count]);
-        }
-        result
     }
 }
 
@@ -129,9 +141,10 @@ pub(crate) fn pad<T: Copy>(padded: &mut [T], numbers: &[T]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{CHUNK, Largest, Padded};
+    use super::{CHUNK, Largest, Padded, close_chunk, is_whole, open_chunk};
     use crate::dispatch::on_portable;
     use crate::math::Lanes;
+    use crate::store::ColumnsMut;
 
     #[test]
     fn the_largest_is_not_lost_nor_what_is_no_number() {
@@ -162,26 +175,27 @@ mod tests {
         let numbers: Vec<f32> = (0..100).map(|i| i as f32).collect();
         let mut padded = Padded::new();
         for (start, count) in [(0, CHUNK), (17, CHUNK), (40, 5), (90, 10), (99, 1)] {
-            padded.with(&[&numbers], start, count, |chunk| {
-                assert_eq!((chunk.columns.len(), chunk.count), (1, count));
-                for p in 0..CHUNK {
-                    let expected = (start + p).min(99) as f32;
-                    assert_eq!(chunk.columns[0][chunk.start + p], expected);
-                }
-            });
+            let whole = is_whole(&[&numbers[..]], start);
+            assert_eq!(whole, start + CHUNK <= 100);
+            let rows = padded.copy(&[&numbers], start, count)[0];
+            for (p, row) in rows.iter().enumerate() {
+                assert_eq!(*row, (start + p.min(count - 1)) as f32);
+            }
         }
     }
 
     #[test]
     fn what_is_written_past_the_end_is_dropped() {
-        let mut numbers = vec![0.0_f64; 50];
+        let mut numbers = [vec![0.0_f64; 50]];
+        let mut columns = ColumnsMut::new(&mut numbers);
         let mut padded = Padded::new();
+        let mut copies = padded.columns();
         for (start, count) in [(0, CHUNK), (CHUNK, 10)] {
-            padded.with_mut(&mut [&mut numbers], start, count, |columns, at| {
-                columns[0][at..at + CHUNK].fill(count as f64);
-            });
+            let (chunk, at) = open_chunk(&mut columns, &mut copies, 1, start, count);
+            chunk.slices[0][at..at + CHUNK].fill(count as f64);
+            close_chunk(&mut columns, &copies, 1, start, count);
         }
         let expected = [[32.0; 32].as_slice(), &[10.0; 10], &[0.0; 8]].concat();
-        assert_eq!(numbers, expected);
+        assert_eq!(numbers[0], expected);
     }
 }

@@ -535,7 +535,7 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
 
     /// Copies the nodes that tile `tile` covers, as far as `reach`.
     pub(crate) fn load_tile(&self, isa: IsaToken, tile: usize, reach: Reach<D>, out: &mut [T]) {
-        on_level!(isa.0, simd => self.copy_nodes(simd, tile, reach, out));
+        on_level!(isa.0, simd => self.copy_tile(simd, tile, reach, out));
     }
 
     /// What to load of tile `tile` for the particles that were scattered to it last: rows are read four nodes
@@ -550,8 +550,9 @@ impl<T: Lanes, const D: usize> Grid<T, D> {
         reach
     }
 
+    /// [`Self::load_tile`] where the instruction set is known.
     #[inline(always)]
-    fn copy_nodes<S: Simd>(&self, simd: S, tile: usize, reach: Reach<D>, out: &mut [T]) {
+    pub(crate) fn copy_tile<S: Simd>(&self, simd: S, tile: usize, reach: Reach<D>, out: &mut [T]) {
         for link in self.links.of_tile(tile) {
             let block = &self.nodes[link.block as usize * self.block_len()..][..self.block_len()];
             for plane in 0..self.planes {

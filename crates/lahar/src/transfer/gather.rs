@@ -7,7 +7,7 @@ use crate::boundary::impulse::Taken;
 use crate::boundary::pointer::Push;
 use crate::boundary::surface::put_out;
 use crate::boundary::walls::Walls;
-use crate::chunk::{AHEAD, CHUNK, Largest, Padded};
+use crate::chunk::{AHEAD, CHUNK, Largest, Padded, close_chunk, open_chunk};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_vector};
@@ -135,26 +135,9 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
     ) -> Bounds {
         let Some((middle, row)) = split_runs(runs, grain) else {
             let _flush = crate::float_mode::FlushToZero::enter();
-            let (mut stage, mut padded) = (Stage::new(), Padded::new());
-            let mut tile = TileCopy::new();
-            let mut columns = columns;
-            let mut bounds = Bounds::NONE;
-            for (index, run) in runs.iter().enumerate() {
-                tile.load(self.grid, self.isa, &runs[index..]);
-                let mut found = self.block(
-                    run,
-                    first_row,
-                    &tile.0,
-                    &mut columns,
-                    &mut stage,
-                    &mut padded,
-                );
-                let of_run = &mut taken[index * self.around.colliders.len()..]
-                    [..self.around.colliders.len()];
-                self.put_out(run, first_row, &mut columns, of_run, &mut found);
-                bounds = bounds.and(found);
-            }
-            return bounds;
+            return with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
+                self.blocks::<_, K, SPLIT, CLASSIC>(simd, runs, first_row, columns, taken)
+            });
         };
         let (low, high) = runs.split_at(middle);
         let (low_columns, high_columns) = columns.split_at(row - first_row);
@@ -166,17 +149,55 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         a.and(b)
     }
 
-    fn block(
+    /// Moves the particles of `runs`.
+    #[inline(always)]
+    fn blocks<S: Simd, K: BSpline, const SPLIT: bool, const CLASSIC: bool>(
         &self,
+        simd: S,
+        runs: &[Run<D>],
+        first_row: usize,
+        columns: ColumnsMut<'_, T>,
+        taken: &mut [Taken<D>],
+    ) -> Bounds {
+        let (mut stage, mut padded) = (Stage::new(), Padded::new());
+        let (mut columns, mut copies) = (columns, padded.columns());
+        let mut tile = TileCopy::new();
+        let mut bounds = Bounds::NONE;
+        for (index, run) in runs.iter().enumerate() {
+            tile.load(simd, self.grid, &runs[index..]);
+            let mut found = self.block::<_, K, SPLIT, CLASSIC>(
+                simd,
+                run,
+                first_row,
+                &tile.0,
+                &mut columns,
+                &mut copies,
+                &mut stage,
+            );
+            let colliders = self.around.colliders.len();
+            let of_run = &mut taken[index * colliders..][..colliders];
+            self.put_out(run, first_row, &mut columns, of_run, &mut found);
+            bounds = bounds.and(found);
+        }
+        bounds
+    }
+
+    #[inline(always)]
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "what does not change comes apart from what does"
+    )]
+    fn block<'c, S: Simd, K: BSpline, const SPLIT: bool, const CLASSIC: bool>(
+        &self,
+        simd: S,
         run: &Run<D>,
         first_row: usize,
         tile: &[T],
-        columns: &mut ColumnsMut<'_, T>,
+        columns: &mut ColumnsMut<'c, T>,
+        copies: &mut ColumnsMut<'c, T>,
         stage: &mut Stage<T>,
-        padded: &mut Padded<T>,
     ) -> Bounds {
         let plane = self.grid.tile_plane();
-        let columns = &mut columns.slices[..self.columns];
         let keep = Keep {
             hold: self.hold(run),
             push: self.push(run),
@@ -186,20 +207,18 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         let (mut failed, mut failures) = (None, 0);
         for row in run.rows().step_by(CHUNK) {
             let start = row - first_row;
-            prefetch_chunk(columns, start + AHEAD);
+            prefetch_chunk(&columns.slices[..self.columns], start + AHEAD);
             let count = CHUNK.min(run.end as usize - row);
-            let found = padded.with_mut(columns, start, count, |columns, at| {
-                let found = with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
-                    chunk::<_, T, D, K, SPLIT, CLASSIC>(
-                        simd, self, at, count, plane, tile, &keep, columns, stage, &mut most,
-                    )
-                });
-                let strain = &mut columns[Layout::strain(D)..];
-                let modulus = &mut most.wave_modulus;
-                self.law
-                    .advance(self.isa, strain, at, count, &stage.matrix, modulus);
-                found
-            });
+            let (rows, at) = open_chunk(columns, copies, self.columns, start, count);
+            let rows = &mut rows.slices[..self.columns];
+            let found = chunk::<_, T, D, K, SPLIT, CLASSIC>(
+                simd, self, at, count, plane, tile, &keep, rows, stage, &mut most,
+            );
+            let strain = &mut rows[Layout::strain(D)..];
+            let modulus = &mut most.wave_modulus;
+            self.law
+                .advance(self.isa, strain, at, count, &stage.matrix, modulus);
+            close_chunk(columns, copies, self.columns, start, count);
             failed = failed.or(found.0.map(|p| row + p));
             failures += found.1;
         }

@@ -20,10 +20,10 @@ pub(crate) mod volume;
 use crate::chunk::{CHUNK, Rows};
 use crate::grid::{Grid, tile_edge, tile_plane};
 use crate::kernel::BSpline;
-use crate::material::IsaToken;
 use crate::math::Lanes;
 use crate::setup::{ForceForm, Kernel, Transfer};
 use crate::store::Run;
+use fearless_simd::Simd;
 
 /// Numbers of the largest tile: cubic in 3D, two planes.
 const LARGEST_TILE: usize = 2 * tile_plane::<3>(tile_edge::<3>(4));
@@ -86,14 +86,14 @@ impl<T: Lanes> TileCopy<T> {
 
     /// Loads what the particles of the first of `runs` read, and asks memory for what those of the second will.
     #[inline(always)]
-    pub(crate) fn load<const D: usize>(
+    pub(crate) fn load<S: Simd, const D: usize>(
         &mut self,
+        simd: S,
         grid: &Grid<T, D>,
-        isa: IsaToken,
         runs: &[Run<D>],
     ) {
         let tile = runs[0].tile as usize;
-        grid.load_tile(isa, tile, grid.reach_of_rows(tile), &mut self.0);
+        grid.copy_tile(simd, tile, grid.reach_of_rows(tile), &mut self.0);
         if let Some(next) = runs.get(1) {
             let tile = next.tile as usize;
             grid.ask_for_nodes(tile, grid.reach_of_rows(tile));

@@ -1,7 +1,7 @@
 //! Particles to grid: (1)–(4).
 
 use super::{Scheme, Stage, rows, with_scheme};
-use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows};
+use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows, is_whole};
 use crate::grid::{Reach, Tiles, tile_edge};
 use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_matrix, load_vector};
@@ -61,26 +61,14 @@ struct Task<'a, T: Lanes, const D: usize> {
 }
 
 impl<T: Lanes, const D: usize> Task<'_, T, D> {
-    fn tile_plane(&self) -> usize {
-        crate::grid::tile_plane::<D>(tile_edge::<D>(self.scheme.kernel_nodes()))
-    }
-
     /// `tiles` begins with tile `first_tile`.
     fn halve(&self, runs: &[Run<D>], first_tile: u32, mut tiles: Tiles<'_, T, D>, grain: usize) {
         let Some((middle, _)) = split_runs(runs, grain) else {
             let _flush = crate::float_mode::FlushToZero::enter();
             let mut buffers = Buffers::new();
-            for run in runs {
-                let index = (run.tile - first_tile) as usize;
-                let tile = &mut tiles.numbers[index * tiles.len..][..tiles.len];
-                let before = if run.first {
-                    tile.fill(T::default());
-                    Reach::NOTHING
-                } else {
-                    tiles.reach[index]
-                };
-                tiles.reach[index] = before.and(self.block(run, tile, &mut buffers));
-            }
+            with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
+                self.blocks::<_, K, SPLIT, CLASSIC>(simd, runs, first_tile, &mut tiles, &mut buffers);
+            });
             return;
         };
         let (low, high) = runs.split_at(middle);
@@ -92,8 +80,39 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         );
     }
 
-    /// Adds the particles of `run` to their tile; says how far they reach.
-    fn block(&self, run: &Run<D>, tile: &mut [T], buffers: &mut Buffers<T>) -> Reach<D> {
+    /// Adds the particles of `runs` to their tiles.
+    #[inline(always)]
+    fn blocks<S: Simd, K: BSpline, const SPLIT: bool, const CLASSIC: bool>(
+        &self,
+        simd: S,
+        runs: &[Run<D>],
+        first_tile: u32,
+        tiles: &mut Tiles<'_, T, D>,
+        buffers: &mut Buffers<T>,
+    ) {
+        for run in runs {
+            let index = (run.tile - first_tile) as usize;
+            let tile = &mut tiles.numbers[index * tiles.len..][..tiles.len];
+            let before = if run.first {
+                tile.fill(T::default());
+                Reach::NOTHING
+            } else {
+                tiles.reach[index]
+            };
+            self.block::<_, K, SPLIT, CLASSIC>(simd, run, tile, buffers);
+            tiles.reach[index] = before.and(self.reach(&buffers.stage));
+        }
+    }
+
+    /// Adds the particles of `run` to their tile; leaves how far they reach in the stage.
+    #[inline(always)]
+    fn block<S: Simd, K: BSpline, const SPLIT: bool, const CLASSIC: bool>(
+        &self,
+        simd: S,
+        run: &Run<D>,
+        tile: &mut [T],
+        buffers: &mut Buffers<T>,
+    ) {
         let Buffers {
             stage,
             padded,
@@ -110,19 +129,34 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
                 mass.rows(start, count, mass_room),
                 volume0.rows(start, count, volume0_room),
             );
-            padded.with(self.columns, start, count, |chunk| {
-                let particles = Particles {
-                    chunk,
-                    mass,
-                    volume0,
-                };
-                self.chunk(&particles, tile, stage);
-            });
+            let copies;
+            let (columns, start) = if is_whole(self.columns, start) {
+                (self.columns, start)
+            } else {
+                copies = padded.copy(self.columns, start, count);
+                (&copies[..self.columns.len()], 0)
+            };
+            let particles = Particles {
+                chunk: Chunk {
+                    columns,
+                    start,
+                    count,
+                },
+                mass,
+                volume0,
+            };
+            self.chunk::<_, K, SPLIT, CLASSIC>(simd, &particles, tile, stage);
         }
-        self.reach(stage)
     }
 
-    fn chunk(&self, particles: &Particles<'_, T>, tile: &mut [T], stage: &mut Stage<T>) {
+    #[inline(always)]
+    fn chunk<S: Simd, K: BSpline, const SPLIT: bool, const CLASSIC: bool>(
+        &self,
+        simd: S,
+        particles: &Particles<'_, T>,
+        tile: &mut [T],
+        stage: &mut Stage<T>,
+    ) {
         let Chunk {
             columns,
             start,
@@ -131,25 +165,26 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         let (law, strain) = (&self.group.law, &columns[Layout::strain(D)..]);
         if let What::Volume { corrected } = self.what {
             law.jacobian_minus_one(self.isa, strain, start, count, &mut stage.matrix[0]);
-            with_scheme!(self.scheme, self.isa, simd, K, _SPLIT, _CLASSIC => {
-                prepare_volumes::<_, T, D, K>(simd, particles, corrected, stage);
-                for p in 0..count {
-                    rows::scatter_quad::<_, T, D, K>(simd, stage, p, tile_edge::<D>(K::NODES), tile);
-                }
-            });
+            prepare_volumes::<_, T, D, K>(simd, particles, corrected, stage);
+            for p in 0..count {
+                rows::scatter_quad::<_, T, D, K>(simd, stage, p, tile_edge::<D>(K::NODES), tile);
+            }
             return;
         }
         let affine = &columns[Layout::affine(D)..];
         law.kirchhoff_stress(self.isa, strain, affine, start, count, &mut stage.matrix);
-        let plane = self.tile_plane();
-        with_scheme!(self.scheme, self.isa, simd, K, SPLIT, CLASSIC => {
-            prepare::<_, T, D, K, SPLIT, CLASSIC>(simd, self, particles, stage);
-            for p in 0..count {
-                rows::scatter::<_, T, D, K, SPLIT, CLASSIC>(
-                    simd, stage, p, tile_edge::<D>(K::NODES), plane, tile,
-                );
-            }
-        });
+        prepare::<_, T, D, K, SPLIT, CLASSIC>(simd, self, particles, stage);
+        let plane = crate::grid::tile_plane::<D>(tile_edge::<D>(K::NODES));
+        for p in 0..count {
+            rows::scatter::<_, T, D, K, SPLIT, CLASSIC>(
+                simd,
+                stage,
+                p,
+                tile_edge::<D>(K::NODES),
+                plane,
+                tile,
+            );
+        }
     }
 
     /// Asks memory for the chunk that begins with row `start`.

@@ -6,7 +6,7 @@
 use super::rows::gather_quad;
 use super::scatter::{split_runs, stencil};
 use super::{Scheme, Stage, TileCopy};
-use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows, pad};
+use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows, is_whole, pad};
 use crate::dispatch::{on_level, on_portable};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
@@ -89,21 +89,16 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
     fn halve(&self, runs: &[Run<D>], first_row: usize, out: &mut [T], grain: usize) {
         let Some((middle, row)) = split_runs(runs, grain) else {
             let _flush = crate::float_mode::FlushToZero::enter();
-            let (mut stage, mut padded) = (Stage::new(), Padded::new());
-            let mut tile = TileCopy::new();
-            for (index, run) in runs.iter().enumerate() {
-                tile.load(self.grid, self.isa, &runs[index..]);
-                for start in run.rows().step_by(CHUNK) {
-                    self.ask_for(start + AHEAD);
-                    let count = CHUNK.min(run.end as usize - start);
-                    let out = &mut out[start - first_row..][..count];
-                    let mut values = [T::default(); CHUNK];
-                    pad(&mut values, out);
-                    padded.with(self.columns, start, count, |chunk| {
-                        self.chunk(chunk, &tile.0, &mut stage, &mut values);
-                    });
-                    out.copy_from_slice(&values[..count]);
-                }
+            match self.scheme.kernel {
+                Kernel::Quadratic => on_level!(self.isa.0, simd => {
+                    self.blocks::<_, Quadratic>(simd, runs, first_row, out);
+                }),
+                Kernel::Cubic => on_portable!(simd => {
+                    self.blocks::<_, Cubic>(simd, runs, first_row, out);
+                }),
+                Kernel::Linear => on_portable!(simd => {
+                    self.blocks::<_, Linear>(simd, runs, first_row, out);
+                }),
             }
             return;
         };
@@ -115,31 +110,47 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
         );
     }
 
+    #[inline(always)]
+    fn blocks<S: Simd, K: BSpline>(
+        &self,
+        simd: S,
+        runs: &[Run<D>],
+        first_row: usize,
+        out: &mut [T],
+    ) {
+        let (mut stage, mut padded) = (Stage::new(), Padded::new());
+        let mut tile = TileCopy::new();
+        for (index, run) in runs.iter().enumerate() {
+            tile.load(simd, self.grid, &runs[index..]);
+            for start in run.rows().step_by(CHUNK) {
+                self.ask_for(start + AHEAD);
+                let count = CHUNK.min(run.end as usize - start);
+                let out = &mut out[start - first_row..][..count];
+                let mut values = [T::default(); CHUNK];
+                pad(&mut values, out);
+                let copies;
+                let (columns, start) = if is_whole(self.columns, start) {
+                    (self.columns, start)
+                } else {
+                    copies = padded.copy(self.columns, start, count);
+                    (&copies[..self.columns.len()], 0)
+                };
+                let particles = Chunk {
+                    columns,
+                    start,
+                    count,
+                };
+                chunk::<_, T, D, K>(simd, self, particles, &tile.0, &mut stage, &mut values);
+                out.copy_from_slice(&values[..count]);
+            }
+        }
+    }
+
     /// Asks memory for the chunk that begins with row `start`.
     fn ask_for(&self, start: usize) {
         prefetch_chunk(&self.columns[..D], start);
         if let Read::Correction(_) = self.what {
             prefetch_chunk(&self.columns[Layout::affine(D)..], start);
-        }
-    }
-
-    fn chunk(
-        &self,
-        particles: Chunk<'_, T>,
-        tile: &[T],
-        stage: &mut Stage<T>,
-        values: &mut Rows<T>,
-    ) {
-        match self.scheme.kernel {
-            Kernel::Quadratic => on_level!(self.isa.0, simd => {
-                chunk::<_, T, D, Quadratic>(simd, self, particles, tile, stage, values);
-            }),
-            Kernel::Cubic => on_portable!(simd => {
-                chunk::<_, T, D, Cubic>(simd, self, particles, tile, stage, values);
-            }),
-            Kernel::Linear => on_portable!(simd => {
-                chunk::<_, T, D, Linear>(simd, self, particles, tile, stage, values);
-            }),
         }
     }
 }
