@@ -15,6 +15,7 @@ PEERS = {
     "taichi": "Taichi, as its examples are written",
     "taichi-tuned": "Taichi, tuned (sorted; serial or coloured scatter)",
     "warp": "Warp",
+    "sparkl": "sparkl (one line mended)",
 }
 # Particles a cell, and the part of a cubic metre (square metre in 2D) that the column fills.
 SCENES = {"dam-3d": (3, 8, 0.25), "dam-2d": (2, 4, 0.5)}
@@ -55,7 +56,9 @@ def compare(args, case, threads):
     dim, ppc, part = SCENES[case]
     cells = round((args.particles / (ppc * part)) ** (1 / dim))
     shown = run([args.lahar, "show", f"bench-{case}", "--set", f"dx={1 / cells!r}", "--json"])
-    peers = [name for name in args.peers if name != "warp" or (dim == 3 and threads == 1)]
+    peers = [name for name in args.peers if dim == 3 or name not in ("warp", "sparkl")]
+    if threads > 1 and "warp" in peers:
+        peers.remove("warp")
     rates = {name: [] for name in ["lahar", *peers]}
     particles = None
     for number in range(args.rounds):
@@ -74,6 +77,12 @@ def compare(args, case, threads):
 
 def worker(job):
     """One program, once; prints its rates."""
+    if job["name"] == "sparkl":
+        import speed_sparkl
+
+        print(json.dumps(speed_sparkl.measure(job)))
+        return
+
     from speed_scene import Scene, measure
 
     scene = Scene(job["dim"], job["cells"], job["sound_speed"], job["dt"])

@@ -137,7 +137,10 @@ pub(crate) fn functions() -> impl Iterator<Item = &'static str> {
 }
 
 /// Points that are evaluated at once.
-const BLOCK: usize = 64;
+pub(crate) const BLOCK: usize = 64;
+
+/// Numbers that a formula may have to keep at a time without asking for memory.
+const SHALLOW: usize = 8;
 
 impl Expression {
     /// Longest formula \[bytes\].
@@ -204,7 +207,14 @@ impl Expression {
     /// Its value at every point: `fill(variable, first, column)` writes the values of a variable at
     /// the points `first..first + column.len()`.
     pub(crate) fn evaluate(&self, out: &mut [f64], fill: impl Fn(usize, usize, &mut [f64])) {
-        let mut stack = vec![[0.0; BLOCK]; self.stack];
+        // Few formulas are so deep that they have to ask for memory.
+        let (mut shallow, mut deep) = ([[0.0; BLOCK]; SHALLOW], Vec::new());
+        let stack = if self.stack <= SHALLOW {
+            &mut shallow[..]
+        } else {
+            deep.resize(self.stack, [0.0; BLOCK]);
+            &mut deep[..]
+        };
         for (block, out) in out.chunks_mut(BLOCK).enumerate() {
             let count = out.len();
             // The next free place on the stack.

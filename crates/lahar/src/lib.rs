@@ -17,6 +17,7 @@ mod parallel;
 pub mod particles;
 mod prefetch;
 pub mod probe;
+mod push;
 pub mod reference;
 mod retry;
 pub mod setup;

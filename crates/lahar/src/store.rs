@@ -120,6 +120,21 @@ impl<const D: usize> Run<D> {
     }
 }
 
+/// Where to cut a list of runs so that both halves have about as many particles: the index of the
+/// first run of the second half and its first row. `None` if the list is not worth cutting.
+pub(crate) fn split_runs<const D: usize>(runs: &[Run<D>], grain: usize) -> Option<(usize, usize)> {
+    let (first, last) = (runs.first()?, runs.last()?);
+    let rows = (last.end - first.start) as usize;
+    if rows <= grain || runs.len() < 2 {
+        return None;
+    }
+    let half = first.start + (rows / 2) as u32;
+    let middle = runs
+        .partition_point(|run| run.start < half)
+        .clamp(1, runs.len() - 1);
+    Some((middle, runs[middle].start as usize))
+}
+
 /// Speed of sound at rest, lengths in metres.
 fn sound_speed<T: Lanes, const D: usize>(law: &dyn Law<T, D>, density: f64) -> f64 {
     let rest = vec![vec![T::default()]; law.strain_columns()];

@@ -4,12 +4,32 @@
 mod common;
 
 use common::{brawl, brawl_with_all_options, crowd};
-use lahar::{Contact, Force, Instance, ParticleBatch, Pull, Setup, Simulate, Simulation, Transfer};
+use lahar::{
+    AccelerationField, Contact, Force, Instance, ParticleBatch, Pull, Setup, Simulate, Simulation,
+    Transfer,
+};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
+use std::sync::Arc;
 
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+/// Pulls particles to where they started.
+#[derive(Debug)]
+struct HomeSick;
+
+impl AccelerationField<2> for HomeSick {
+    fn accelerations(&self, _: f64, at: &[[f64; 2]], starts: &[[f64; 2]], out: &mut [[f64; 2]]) {
+        for ((a, x), start) in out.iter_mut().zip(at).zip(starts) {
+            *a = [0, 1].map(|i| 3.0 * (start[i] - x[i]));
+        }
+    }
+
+    fn depends_on_start(&self) -> bool {
+        true
+    }
+}
 
 /// Substeps that allocate, of the last ones that do not sort, and how many there are of these.
 fn allocating<T: Instance<D>, const D: usize>(
@@ -60,6 +80,10 @@ fn a_substep_allocates_nothing() {
             softening: 0.1,
         })];
         none("FLIP in a field", allocating::<f64, 2>((setup, batches)));
+
+        let (mut setup, batches) = brawl(64);
+        setup.forces = vec![Force::Field(Arc::new(HomeSick))];
+        none("pushed home", allocating::<f32, 2>((setup, batches)));
 
         // The nodes around colliders are now more, now fewer: room for the most has to be found first.
         let (mut setup, batches) = brawl(64);

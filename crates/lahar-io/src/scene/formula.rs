@@ -1,6 +1,6 @@
 //! Vectors of a scene that are numbers or formulas: gravity, forces, velocities at the start.
 
-use crate::expression::Expression;
+use crate::expression::{BLOCK, Expression};
 use lahar::AccelerationField;
 
 /// Variables of formulas, by their numbers: place, time, place at the start.
@@ -80,27 +80,31 @@ impl<const D: usize> AccelerationField<D> for Formulas<D> {
         starts: &[[f64; D]],
         out: &mut [[f64; D]],
     ) {
-        let mut column = vec![0.0; out.len()];
         for (axis, formula) in self.0.iter().enumerate() {
             // What is the same everywhere is computed once.
             let same = (0..D).all(|i| !formula.uses(X + i) && !formula.uses(START + i));
-            let values = if same {
-                &mut column[..1]
-            } else {
-                &mut column[..]
-            };
-            formula.evaluate(values, |variable, first, column| {
-                let (points, i) = match variable {
-                    T => return column.fill(time),
-                    START.. => (starts, variable - START),
-                    _ => (positions, variable - X),
-                };
-                for (value, point) in column.iter_mut().zip(&points[first..]) {
-                    *value = point[i];
+            if same {
+                let mut value = [0.0];
+                formula.evaluate(&mut value, |_, _, column| column.fill(time));
+                out.iter_mut().for_each(|a| a[axis] = value[0]);
+                continue;
+            }
+            let mut column = [0.0; BLOCK];
+            for (block, out) in out.chunks_mut(BLOCK).enumerate() {
+                let values = &mut column[..out.len()];
+                formula.evaluate(values, |variable, first, column| {
+                    let (points, i) = match variable {
+                        T => return column.fill(time),
+                        START.. => (starts, variable - START),
+                        _ => (positions, variable - X),
+                    };
+                    for (value, point) in column.iter_mut().zip(&points[block * BLOCK + first..]) {
+                        *value = point[i];
+                    }
+                });
+                for (a, value) in out.iter_mut().zip(&*values) {
+                    a[axis] = *value;
                 }
-            });
-            for (i, a) in out.iter_mut().enumerate() {
-                a[axis] = column[if same { 0 } else { i }];
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Grid to particles: (5)–(8).
 
-use super::scatter::{split_runs, stencil};
+use super::scatter::stencil;
 use super::{Scheme, Stage, TileCopy, rows, with_scheme};
 use crate::boundary::collider::Moving;
 use crate::boundary::impulse::Taken;
@@ -16,7 +16,7 @@ use crate::parallel;
 use crate::prefetch::prefetch_chunk;
 use crate::setup::Transfer;
 use crate::sort::in_range;
-use crate::store::{ColumnsMut, Group, Layout, PerParticle, Run, block_edge};
+use crate::store::{ColumnsMut, Group, Layout, PerParticle, Run, block_edge, split_runs};
 use fearless_simd::Simd;
 
 /// What a gather found out, for the next time step and for the sort.

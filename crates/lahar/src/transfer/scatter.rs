@@ -9,7 +9,7 @@ use crate::math::{Lanes, Matrix, Real, Vector};
 use crate::parallel;
 use crate::prefetch::prefetch_chunk;
 use crate::setup::{ForceForm, Transfer};
-use crate::store::{Group, Layout, Run, block_edge, slices};
+use crate::store::{Group, Layout, Run, block_edge, slices, split_runs};
 use fearless_simd::Simd;
 
 /// What is scattered.
@@ -223,21 +223,6 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
 /// The node of a tile that a particle at u = 0 has for its base: tiles begin one node before their block.
 fn first_node(dimension: usize) -> f64 {
     (block_edge(dimension) / 2) as f64 + 1.0
-}
-
-/// Where to cut a list of runs so that both halves have about as many particles: the index of the
-/// first run of the second half and its first row. `None` if the list is not worth cutting.
-pub(super) fn split_runs<const D: usize>(runs: &[Run<D>], grain: usize) -> Option<(usize, usize)> {
-    let (first, last) = (runs.first()?, runs.last()?);
-    let rows = (last.end - first.start) as usize;
-    if rows <= grain || runs.len() < 2 {
-        return None;
-    }
-    let half = first.start + (rows / 2) as u32;
-    let middle = runs
-        .partition_point(|run| run.start < half)
-        .clamp(1, runs.len() - 1);
-    Some((middle, runs[middle].start as usize))
 }
 
 /// The stencil of a register of particles: weights to the stage; returns s, the place from the base

@@ -4,7 +4,7 @@
 //! is dxᴰ a node; where there is less, what is there has expanded by as much.
 
 use super::rows::gather_quad;
-use super::scatter::{split_runs, stencil};
+use super::scatter::stencil;
 use super::{Scheme, Stage, TileCopy};
 use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows, is_whole, pad};
 use crate::dispatch::{on_level, on_portable};
@@ -16,7 +16,7 @@ use crate::math::{Lanes, Real};
 use crate::parallel;
 use crate::prefetch::prefetch_chunk;
 use crate::setup::Kernel;
-use crate::store::{Group, Layout, Run, slices};
+use crate::store::{Group, Layout, Run, slices, split_runs};
 use fearless_simd::Simd;
 
 /// Writes J − 1 of every row of `group` to `out`, by what the grid's nodes hold of rest volume (first
