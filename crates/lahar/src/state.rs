@@ -9,6 +9,7 @@
 use crate::boundary::impulse::Taken;
 use crate::instance::Instance;
 use crate::math::Lanes;
+use crate::parallel;
 use crate::probe::Readings;
 use crate::simulation::{Pointer, Simulation};
 use crate::sort::Escaped;
@@ -55,6 +56,16 @@ impl<T: Lanes, const D: usize> State<T, D> {
     }
 }
 
+/// `to = from`, in the memory of `to`.
+fn copy<T: Lanes>(to: &mut Vec<Vec<T>>, from: &[Vec<T>]) {
+    to.resize_with(from.len(), Vec::new);
+    parallel::for_chunks(to, 1, 0, 1, &|first, to| {
+        for (to, from) in to.iter_mut().zip(&from[first..]) {
+            to.clone_from(from);
+        }
+    });
+}
+
 impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     /// A copy of the state, in the memory of `old` if there is one.
     pub(crate) fn save(&self, old: Option<State<T, D>>) -> State<T, D> {
@@ -96,7 +107,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         });
         for (rows, group) in groups.iter_mut().zip(now) {
             rows.bulk_modulus = group.law.bulk_modulus();
-            rows.columns.clone_from(&group.columns);
+            copy(&mut rows.columns, &group.columns);
             rows.mass.clone_from(&group.mass);
             rows.volume0.clone_from(&group.volume0);
             rows.id.clone_from(&group.id);
@@ -136,7 +147,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                 body,
                 runs,
             } = group;
-            columns.clone_from(&rows.columns);
+            copy(columns, &rows.columns);
             mass.clone_from(&rows.mass);
             volume0.clone_from(&rows.volume0);
             id.clone_from(&rows.id);

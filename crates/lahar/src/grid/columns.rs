@@ -7,6 +7,7 @@ use crate::boundary::walls::{Plane, Walls};
 use crate::dispatch::on_level;
 use crate::material::IsaToken;
 use crate::math::{Lanes, Mask, Real, Vector};
+use crate::prefetch::prefetch;
 use crate::store::block_edge;
 use fearless_simd::Simd;
 
@@ -106,7 +107,10 @@ impl<const D: usize> Columns<D> {
             let mut fold = Fold::new(wall, planes, blend);
             on_level!(isa.0, simd => {
                 let pressed = pressed.chunks_exact_mut(columns_a_face(D));
-                for (face, pressed) in faces.iter().zip(pressed) {
+                for (number, (face, pressed)) in faces.iter().zip(pressed).enumerate() {
+                    if let Some(next) = faces.get(number + 1) {
+                        next.ask_for_nodes(nodes, planes);
+                    }
                     let kept = face.kept.map(|kept| &self.masses[kept as usize]);
                     fold.face(simd, face, nodes, kept, pressed);
                 }
@@ -197,6 +201,19 @@ impl<const D: usize> Face<D> {
         let run = self.run();
         let node = (column / run * block_edge(D) + usize::from(local)) * run + column % run;
         Some((block? as usize * BLOCK_NODES * planes + node) * QUAD)
+    }
+
+    /// Asks memory for its nodes.
+    #[inline(always)]
+    fn ask_for_nodes<T>(&self, nodes: &[T], planes: usize) {
+        let run = self.run();
+        for side in 0..3 {
+            for column in (0..columns_a_face(D)).step_by(run) {
+                if let Some(quad) = self.quad_at(column, side, planes) {
+                    prefetch(&nodes[quad..][..run * QUAD]);
+                }
+            }
+        }
     }
 
     /// Calls `f(column, side, place)` for the quads of all nodes that there are, in plane 0.
