@@ -77,6 +77,7 @@ impl<const D: usize> Columns<D> {
             }
             pressed.resize(faces.len() * columns_a_face(D), 0.0);
         }
+        self.masses.clear(); // of nodes that are not there none are written
         self.masses.resize(kept as usize, [[0.0; MOST_COLUMNS]; 3]);
     }
 
@@ -97,8 +98,11 @@ impl<const D: usize> Columns<D> {
         for face in self.walls.iter().flatten() {
             if let Some(kept) = face.kept {
                 let masses = &mut self.masses[kept as usize];
-                face.for_quads(planes, |column, side, quad| {
-                    masses[side][column] = nodes[quad + 3].to_f64();
+                face.for_runs(planes, |side, column, place| {
+                    let quads = nodes[place..][..face.run() * QUAD].chunks_exact(QUAD);
+                    for (mass, quad) in masses[side][column..].iter_mut().zip(quads) {
+                        *mass = quad[3].to_f64();
+                    }
                 });
             }
         }
@@ -109,7 +113,9 @@ impl<const D: usize> Columns<D> {
                 let pressed = pressed.chunks_exact_mut(columns_a_face(D));
                 for (number, (face, pressed)) in faces.iter().zip(pressed).enumerate() {
                     if let Some(next) = faces.get(number + 1) {
-                        next.ask_for_nodes(nodes, planes);
+                        next.for_runs(planes, |_, _, place| {
+                            prefetch(&nodes[place..][..next.run() * QUAD]);
+                        });
                     }
                     let kept = face.kept.map(|kept| &self.masses[kept as usize]);
                     fold.face(simd, face, nodes, kept, pressed);
@@ -203,25 +209,14 @@ impl<const D: usize> Face<D> {
         Some((block? as usize * BLOCK_NODES * planes + node) * QUAD)
     }
 
-    /// Asks memory for its nodes.
+    /// Calls `f(side, column, place)` for each run of quads that there is, in plane 0: where that of `column`
+    /// is, the first of [`Self::run`].
     #[inline(always)]
-    fn ask_for_nodes<T>(&self, nodes: &[T], planes: usize) {
-        let run = self.run();
+    fn for_runs(&self, planes: usize, mut f: impl FnMut(usize, usize, usize)) {
         for side in 0..3 {
-            for column in (0..columns_a_face(D)).step_by(run) {
-                if let Some(quad) = self.quad_at(column, side, planes) {
-                    prefetch(&nodes[quad..][..run * QUAD]);
-                }
-            }
-        }
-    }
-
-    /// Calls `f(column, side, place)` for the quads of all nodes that there are, in plane 0.
-    fn for_quads(&self, planes: usize, mut f: impl FnMut(usize, usize, usize)) {
-        for side in 0..3 {
-            for column in 0..columns_a_face(D) {
-                if let Some(quad) = self.quad_at(column, side, planes) {
-                    f(column, side, quad);
+            for column in (0..columns_a_face(D)).step_by(self.run()) {
+                if let Some(place) = self.quad_at(column, side, planes) {
+                    f(side, column, place);
                 }
             }
         }
@@ -300,20 +295,14 @@ impl<'a, const D: usize> Fold<'a, D> {
     ) {
         pressed.fill(0.0);
         let zero = T::broadcast(simd, T::default());
-        let run = face.run();
-        let plane_len = BLOCK_NODES * QUAD;
+        let (planes, len) = (self.planes, face.run() * QUAD);
         let mut quads = [[[T::default(); MOST_COLUMNS * QUAD]; 2]; 3];
-        for side in 0..3 {
-            for column in (0..columns_a_face(D)).step_by(run) {
-                let Some(place) = face.quad_at(column, side, self.planes) else {
-                    break;
-                };
-                for plane in 0..self.planes {
-                    let to = &mut quads[side][plane][column * QUAD..][..run * QUAD];
-                    T::copy_quads(simd, to, &nodes[place + plane * plane_len..][..run * QUAD]);
-                }
+        face.for_runs(planes, |side, column, place| {
+            for plane in 0..planes {
+                let from = &nodes[place + plane * BLOCK_NODES * QUAD..][..len];
+                T::copy_quads(simd, &mut quads[side][plane][column * QUAD..][..len], from);
             }
-        }
+        });
 
         // Of each side: the masses that particles brought, and what the wall changes of velocities.
         let mut brought = [[0.0; MOST_COLUMNS]; 3];
@@ -324,7 +313,7 @@ impl<'a, const D: usize> Fold<'a, D> {
             let mut loaded = [[[zero; QUAD]; 2]; 3];
             let mut free = [ColumnNode::<_, D>::of([zero; QUAD], [zero; QUAD]); 3];
             for side in 0..3 {
-                for plane in 0..self.planes {
+                for plane in 0..planes {
                     loaded[side][plane] = T::load_quads(simd, &quads[side][plane][at..]);
                 }
                 free[side] = ColumnNode::of(loaded[side][0], loaded[side][1]);
@@ -359,7 +348,7 @@ impl<'a, const D: usize> Fold<'a, D> {
                     }
                 }
                 velocities[3] = Real::select(acts, folded.mass, free.mass);
-                for plane in 0..self.planes {
+                for plane in 0..planes {
                     T::store_quads::<S>(loaded[side][plane], &mut quads[side][plane][at..]);
                 }
             }
@@ -368,21 +357,12 @@ impl<'a, const D: usize> Fold<'a, D> {
             return;
         }
 
-        for side in 0..3 {
-            for column in (0..columns_a_face(D)).step_by(run) {
-                let Some(place) = face.quad_at(column, side, self.planes) else {
-                    break;
-                };
-                for plane in 0..self.planes {
-                    let from = &quads[side][plane][column * QUAD..][..run * QUAD];
-                    T::copy_quads(
-                        simd,
-                        &mut nodes[place + plane * plane_len..][..run * QUAD],
-                        from,
-                    );
-                }
+        face.for_runs(planes, |side, column, place| {
+            for plane in 0..planes {
+                let to = &mut nodes[place + plane * BLOCK_NODES * QUAD..][..len];
+                T::copy_quads(simd, to, &quads[side][plane][column * QUAD..][..len]);
             }
-        }
+        });
         let brought = kept.unwrap_or(&brought);
         for side in 0..3 {
             self.take(face, side, &brought[side], &change[side], pressed);
@@ -454,5 +434,53 @@ fn add_difference<T: Lanes, S: Simd>(scale: f64, a: T::Of<S>, b: T::Of<S>, sum: 
     T::store(b, &mut of_b);
     for ((sum, a), b) in sum.iter_mut().zip(&of_a).zip(&of_b).take(T::WIDTH) {
         *sum += scale * (a.to_f64() - b.to_f64());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::boundary::{Contact, Domain, Sides, WallStyle};
+    use crate::dispatch;
+    use crate::setup::Setup;
+
+    /// What the walls take from the nodes of `blocks`, all of them with mass and moving down and to the left.
+    fn fold(columns: &mut Columns<2>, blocks: &[[i32; 2]]) -> Vec<Taken<2>> {
+        let wall = Contact::Slip { friction: 0.3 };
+        let mut setup = Setup::new(1.0, Vec::new());
+        setup.domain = Some(Domain {
+            min: [0.0; 2],
+            max: [64.0; 2],
+            sides: [Sides::Walls {
+                low: wall,
+                high: wall,
+            }; 2],
+            style: WallStyle::Plane,
+        });
+        let walls = Walls::of(&setup).expect("good walls");
+        let mut nodes: Vec<f64> = (0..blocks.len() * BLOCK_NODES)
+            .flat_map(|node| {
+                let part = (node % 7) as f64;
+                [-1.0 - part, -2.0 + 0.1 * part, 0.0, 1.0 + 0.5 * part]
+            })
+            .collect();
+        let isa = IsaToken(dispatch::portable());
+        let mut taken = vec![Taken::NOTHING; 4];
+        columns.find(blocks, &walls);
+        columns.fold(isa, &mut nodes, 1, &walls, 0.0, &mut taken);
+        taken
+    }
+
+    #[test]
+    fn nodes_that_are_gone_take_nothing() {
+        let mut columns = Columns::default();
+        let corner = [[-1, -1], [-1, 0], [0, -1], [0, 0]];
+        let all = fold(&mut columns, &corner);
+        assert!(all[0].impulse[0] < 0.0 && all[2].impulse[1] < 0.0);
+        for fewer in [&corner[3..], &corner[2..], &corner[1..]] {
+            let again = fold(&mut columns, fewer);
+            assert_eq!(again, fold(&mut Columns::default(), fewer));
+            assert_ne!(again, all);
+        }
     }
 }
