@@ -21,12 +21,6 @@ pub(crate) struct Chunk<'a, T> {
     pub(crate) count: usize,
 }
 
-/// Whether a whole chunk begins with row `start`.
-#[inline(always)]
-pub(crate) fn is_whole<T>(columns: &[&[T]], start: usize) -> bool {
-    columns.iter().all(|column| start + CHUNK <= column.len())
-}
-
 /// Room for the rows of chunks that are not full.
 #[repr(align(64))]
 pub(crate) struct Padded<T>([Rows<T>; MOST_COLUMNS]);
@@ -36,14 +30,33 @@ impl<T: Copy + Default> Padded<T> {
         Self([[T::default(); CHUNK]; MOST_COLUMNS])
     }
 
-    /// Copies of rows `start .. start + count` of `columns`, `count` from 1 to [`CHUNK`], each with the last one
-    /// again behind them; empty rows behind the columns.
-    pub(crate) fn copy(
-        &mut self,
-        columns: &[&[T]],
+    /// Rows `start .. start + count` of `columns`, `count` from 1 to [`CHUNK`]: where they lie if a whole chunk
+    /// begins there, else copies, named in `copies`, with the last one again behind them.
+    #[inline(always)]
+    pub(crate) fn chunk<'a>(
+        &'a mut self,
+        columns: &'a [&'a [T]],
         start: usize,
         count: usize,
-    ) -> [&[T]; MOST_COLUMNS] {
+        copies: &'a mut Option<[&'a [T]; MOST_COLUMNS]>,
+    ) -> Chunk<'a, T> {
+        if columns.iter().all(|column| start + CHUNK <= column.len()) {
+            return Chunk {
+                columns,
+                start,
+                count,
+            };
+        }
+        let copies = copies.insert(self.copy(columns, start, count));
+        Chunk {
+            columns: &copies[..columns.len()],
+            start: 0,
+            count,
+        }
+    }
+
+    /// The copies of [`Self::chunk`]; empty rows behind the columns.
+    fn copy(&mut self, columns: &[&[T]], start: usize, count: usize) -> [&[T]; MOST_COLUMNS] {
         let mut rows = [&[][..]; MOST_COLUMNS];
         for ((rows, padded), column) in rows.iter_mut().zip(&mut self.0).zip(columns) {
             pad(padded, &column[start..start + count]);
@@ -141,7 +154,7 @@ pub(crate) fn pad<T: Copy>(padded: &mut [T], numbers: &[T]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{CHUNK, Largest, Padded, close_chunk, is_whole, open_chunk};
+    use super::{CHUNK, Largest, Padded, close_chunk, open_chunk};
     use crate::dispatch::on_portable;
     use crate::math::Lanes;
     use crate::store::ColumnsMut;
@@ -175,11 +188,12 @@ mod tests {
         let numbers: Vec<f32> = (0..100).map(|i| i as f32).collect();
         let mut padded = Padded::new();
         for (start, count) in [(0, CHUNK), (17, CHUNK), (40, 5), (90, 10), (99, 1)] {
-            let whole = is_whole(&[&numbers[..]], start);
-            assert_eq!(whole, start + CHUNK <= 100);
-            let rows = padded.copy(&[&numbers], start, count)[0];
-            for (p, row) in rows.iter().enumerate() {
-                assert_eq!(*row, (start + p.min(count - 1)) as f32);
+            let (columns, mut copies) = ([&numbers[..]], None);
+            let chunk = padded.chunk(&columns, start, count, &mut copies);
+            assert_eq!((chunk.columns.len(), chunk.count), (1, count));
+            for p in 0..CHUNK {
+                let expected = (start + p).min(99) as f32;
+                assert_eq!(chunk.columns[0][chunk.start + p], expected);
             }
         }
     }

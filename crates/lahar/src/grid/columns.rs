@@ -213,11 +213,14 @@ impl<const D: usize> Face<D> {
     /// is, the first of [`Self::run`].
     #[inline(always)]
     fn for_runs(&self, planes: usize, mut f: impl FnMut(usize, usize, usize)) {
+        let run = self.run();
         for side in 0..3 {
-            for column in (0..columns_a_face(D)).step_by(self.run()) {
-                if let Some(place) = self.quad_at(column, side, planes) {
-                    f(side, column, place);
-                }
+            let Some(mut place) = self.quad_at(0, side, planes) else {
+                continue;
+            };
+            for column in (0..columns_a_face(D)).step_by(run) {
+                f(side, column, place);
+                place += block_edge(D) * run * QUAD;
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Particles to grid: (1)–(4).
 
 use super::{Scheme, Stage, rows, with_scheme};
-use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows, is_whole};
+use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows};
 use crate::grid::{Reach, Tiles, tile_edge};
 use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_matrix, load_vector};
@@ -129,19 +129,9 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
                 mass.rows(start, count, mass_room),
                 volume0.rows(start, count, volume0_room),
             );
-            let copies;
-            let (columns, start) = if is_whole(self.columns, start) {
-                (self.columns, start)
-            } else {
-                copies = padded.copy(self.columns, start, count);
-                (&copies[..self.columns.len()], 0)
-            };
+            let mut copies = None;
             let particles = Particles {
-                chunk: Chunk {
-                    columns,
-                    start,
-                    count,
-                },
+                chunk: padded.chunk(self.columns, start, count, &mut copies),
                 mass,
                 volume0,
             };

@@ -6,7 +6,7 @@
 use super::rows::gather_quad;
 use super::scatter::stencil;
 use super::{Scheme, Stage, TileCopy};
-use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows, is_whole, pad};
+use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows, pad};
 use crate::dispatch::{on_level, on_portable};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
@@ -128,18 +128,8 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
                 let out = &mut out[start - first_row..][..count];
                 let mut values = [T::default(); CHUNK];
                 pad(&mut values, out);
-                let copies;
-                let (columns, start) = if is_whole(self.columns, start) {
-                    (self.columns, start)
-                } else {
-                    copies = padded.copy(self.columns, start, count);
-                    (&copies[..self.columns.len()], 0)
-                };
-                let particles = Chunk {
-                    columns,
-                    start,
-                    count,
-                };
+                let mut copies = None;
+                let particles = padded.chunk(self.columns, start, count, &mut copies);
                 chunk::<_, T, D, K>(simd, self, particles, &tile.0, &mut stage, &mut values);
                 out.copy_from_slice(&values[..count]);
             }

@@ -106,10 +106,24 @@ fn main() {
 
     // What flies apart is not worth its speed.
     let count = particles.len();
-    let mean = particles.iter().map(|p| f64::from(p.fluid_deformation_gradient_det())).sum::<f64>() / count as f64;
-    let fastest = particles.iter().map(|p| p.velocity.norm()).fold(0.0, f32::max);
-    assert!(particles.iter().all(|p| !p.failed && p.position.coords.norm().is_finite()));
-    assert!(fastest < 50.0 && (mean - 1.0).abs() < 0.1, "the fluid is no longer one: {fastest} m/s, J {mean}");
+    let mean = particles
+        .iter()
+        .map(|p| f64::from(p.fluid_deformation_gradient_det()))
+        .sum::<f64>()
+        / count as f64;
+    let fastest = particles
+        .iter()
+        .map(|p| p.velocity.norm())
+        .fold(0.0, f32::max);
+    assert!(
+        particles
+            .iter()
+            .all(|p| !p.failed && p.position.coords.norm().is_finite())
+    );
+    assert!(
+        fastest < 50.0 && (mean - 1.0).abs() < 0.1,
+        "the fluid is no longer one: {fastest} m/s, J {mean}"
+    );
     println!("{}", count as f64 * steps as f64 / taken);
 }
 
@@ -118,7 +132,10 @@ struct Random(u64);
 
 impl Random {
     fn next(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         (self.0 >> 40) as f32 / (1 << 24) as f32
     }
 }
