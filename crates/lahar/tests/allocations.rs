@@ -1,9 +1,10 @@
 //! A substep asks the system for no memory, once its buffers have grown.
 
+#[path = "lahar/fixtures.rs"]
 #[expect(dead_code, reason = "other tests use the rest")]
-mod common;
+mod fixtures;
 
-use common::{brawl, brawl_with_all_options, crowd};
+use fixtures::{brawl, brawl_with_all_options, crowd};
 use lahar::{
     AccelerationField, Contact, Force, Instance, ParticleBatch, Pull, Setup, Simulate, Simulation,
     Transfer,

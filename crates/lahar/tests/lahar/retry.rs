@@ -1,9 +1,7 @@
 //! Frames that fail begin again with half the time step: what failed, what is tried, what is left.
 
-#[expect(dead_code, reason = "other tests use the rest")]
-mod common;
 
-use common::{ALL, bits, brawl};
+use crate::fixtures::{ALL, bits, brawl};
 use lahar::material::{Corotated, Dust, Fluid, lame};
 use lahar::{
     AccelerationField, Command, DtLimit, Failure, Force, Instance, Material, Model, ParticleBatch,

@@ -1,5 +1,5 @@
 //! What users do to scenes and particle files, and what they are told: one error each, with its
-//! place and advice. The texts are kept in tests/snapshots (`cargo insta review` after a change).
+//! place and advice. The texts are kept in tests/io/snapshots (`cargo insta review` after a change).
 
 use lahar_io::error::SceneError;
 use lahar_io::scene::{Limits, Scene};

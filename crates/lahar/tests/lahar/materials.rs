@@ -607,13 +607,13 @@ fn matches_table<const D: usize>(text: &str) {
 
 #[test]
 fn solids_match_the_tables() {
-    matches_table::<2>(include_str!("data/constitutive_reference_2d.csv"));
-    matches_table::<3>(include_str!("data/constitutive_reference_3d.csv"));
+    matches_table::<2>(include_str!("../data/constitutive_reference_2d.csv"));
+    matches_table::<3>(include_str!("../data/constitutive_reference_3d.csv"));
 }
 
 #[test]
 fn equations_of_state_match_the_table() {
-    let table = Table::parse(include_str!("data/eos_reference.csv"));
+    let table = Table::parse(include_str!("../data/eos_reference.csv"));
     let law = |eos| Fluid {
         eos,
         tension: f64::INFINITY,

@@ -1,11 +1,8 @@
 //! Colliders: a surface between nodes is where it is drawn, takes what the material loses, lets go of
 //! what leaves, and is not passed.
 
-#[expect(dead_code, reason = "the checks of bits use the rest")]
-mod common;
 
-use common::{CONTACTS, ball, brawl, crowd, one_of_each};
-mod walled;
+use crate::fixtures::{self, CONTACTS, ball, brawl, crowd, one_of_each};
 
 use lahar::material::{Corotated, Fluid, lame};
 use lahar::particles::Field;
@@ -13,7 +10,7 @@ use lahar::{
     Collider, Contact, Deformation, Domain, Instance, Material, Model, Motion, ParticleBatch,
     Setup, Simulate, Simulation, Solid, TimeStep, Transfer, WallStyle,
 };
-use walled::{SEPARATE, SLIP, both, field};
+use crate::walled::{SEPARATE, SLIP, both, field};
 
 const DENSITY: f64 = 1000.0; // kg/m³
 const G: f64 = 9.81; // m/s²
@@ -396,7 +393,7 @@ fn a_block_stays_on_a_slope_that_holds_it() {
 /// A piston through a column of water takes it along, and no particle stays behind.
 #[test]
 fn a_fast_piston_passes_no_particle() {
-    let mut random = common::Random(3);
+    let mut random = fixtures::Random(3);
     let dx = 0.05;
     let mut setup = Setup::<2>::new(dx, one_of_each());
     setup.colliders = vec![Collider {

@@ -1,9 +1,7 @@
 //! Same scene, same bits: over threads, over shifts by whole blocks, over looking at it.
 
-#[expect(dead_code, reason = "other tests use the rest")]
-mod common;
 
-use common::{ALL, bits, brawl, brawl_with_all_options, crowd, run_on};
+use crate::fixtures::{ALL, bits, brawl, brawl_with_all_options, crowd, run_on};
 use lahar::Instance;
 use lahar::particles::Field;
 use lahar::{Collider, Contact, Isa, Motion, ParticleBatch, Setup, Simulate, Simulation, Transfer};

@@ -53,7 +53,7 @@ fn built_in_scenes_keep_their_bits() {
         }
         writeln!(found, "{} {:016x}", scene.name, hash(&*simulation)).expect("a string takes all");
     }
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden.txt");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/io/golden.txt");
     if std::env::var_os("LAHAR_UPDATE").is_some() {
         std::fs::write(&path, &found).expect("the table can be written");
     }

@@ -1,7 +1,6 @@
 //! Walls on their planes: waves see them where they are drawn, a body at rest stays, and what leaves
 //! a `separate` wall leaves as if there were none.
 
-mod walled;
 
 use lahar::material::{Corotated, Fluid, lame};
 use lahar::particles::Field;
@@ -10,7 +9,7 @@ use lahar::{
     Simulation, TimeStep, Transfer, WallStyle,
 };
 use std::f64::consts::PI;
-use walled::{SEPARATE, SLIP, both, field};
+use crate::walled::{SEPARATE, SLIP, both, field};
 
 const DENSITY: f64 = 1000.0; // kg/m³
 

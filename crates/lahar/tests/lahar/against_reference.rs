@@ -1,13 +1,9 @@
 //! The fast engine against the oracle, in every combination of dimension, kernel, transfer, force
 //! and material: what layout, lanes, rows, sorting and threads must not change.
 
-#[expect(dead_code, reason = "the checks of bits use the rest")]
-mod common;
-#[expect(dead_code, reason = "the method's checks use the rest")]
-mod engine;
 
-use common::{Random, ball, brawl, brawl_with_all_options};
-use engine::{Engine, Fast, Oracle, State};
+use crate::fixtures::{self, Random, ball, brawl, brawl_with_all_options};
+use crate::engine::{Engine, Fast, Oracle, State};
 use lahar::Instance;
 use lahar::material::VolumeRule;
 use lahar::{
@@ -186,12 +182,12 @@ fn all_options_3d_f32() {
 
 /// Colliders of all shapes and motions, with every contact.
 fn among_colliders<T: Instance<D>, const D: usize>(cells: usize, steps: usize, limit: f64) {
-    for contact in common::CONTACTS {
+    for contact in fixtures::CONTACTS {
         for transfer in [Transfer::Flip { blend: 0.95 }, Transfer::Apic] {
             let (mut setup, batches) = brawl::<D>(cells);
             setup.time_step = TimeStep::Fixed(4e-4);
             setup.transfer = transfer;
-            setup.colliders = common::crowd(setup.dx * cells as f64, contact);
+            setup.colliders = fixtures::crowd(setup.dx * cells as f64, contact);
             let difference = compare::<T, D>(&setup, &batches, steps);
             assert!(
                 difference < limit,
@@ -238,7 +234,7 @@ where
     });
     setup.time_step = TimeStep::Fixed(5e-4);
     // At the seam, and moving through it.
-    setup.colliders = common::crowd(size, Contact::Separate { friction: 0.1 });
+    setup.colliders = fixtures::crowd(size, Contact::Separate { friction: 0.1 });
     setup.colliders.remove(0);
     for batch in &mut batches {
         batch.velocity[0][0] = 6.0;

@@ -1,9 +1,7 @@
 //! The hand that stirs: by its laws, and the engine against the oracle.
 
-#[expect(dead_code, reason = "other tests use the rest")]
-mod common;
 
-use common::brawl;
+use crate::fixtures::brawl;
 use lahar::material::Dust;
 use lahar::reference::Reference;
 use lahar::{

@@ -1,12 +1,8 @@
 //! Forces besides gravity and stress: against formulas, against the oracle, and by their bits.
 
-#[expect(dead_code, reason = "other tests use the rest")]
-mod common;
-#[expect(dead_code, reason = "other tests use the rest")]
-mod engine;
 
-use common::brawl;
-use engine::{Engine, Fast, Oracle, State};
+use crate::fixtures::{self, brawl};
+use crate::engine::{Engine, Fast, Oracle, State};
 use lahar::material::Dust;
 use lahar::{
     AccelerationField, Force, Instance, Material, Model, ParticleBatch, Pull, Setup, Simulate,
@@ -263,8 +259,8 @@ fn threads_change_no_bits() {
     let (mut setup, batches) = brawl::<2>(32);
     setup.forces = all_forces(0.5);
     let bits = |threads| {
-        let simulation = common::run_on::<f32, 2>(threads, &setup, &batches, 0.2);
-        common::bits(&simulation.snapshot(common::ALL))
+        let simulation = fixtures::run_on::<f32, 2>(threads, &setup, &batches, 0.2);
+        fixtures::bits(&simulation.snapshot(fixtures::ALL))
     };
     let one = bits(1);
     assert_eq!(one, bits(2));

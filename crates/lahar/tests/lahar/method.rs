@@ -2,9 +2,8 @@
 //!
 //! Each check is a function over [`Engine`]; the table at the end runs all of them on each engine.
 
-mod engine;
 
-use engine::{Engine, Fast, Numbers, Oracle, State, oracle_of, times};
+use crate::engine::{Engine, Fast, Numbers, Oracle, State, oracle_of, times};
 use lahar::boundary::{Contact, Domain, Sides, WallStyle};
 use lahar::kernel::{BSpline, Cubic, Linear, Quadratic};
 use lahar::material::{
@@ -326,7 +325,7 @@ fn table(text: &str) -> (Vec<&str>, Vec<Vec<f64>>) {
 /// Weights, their gradients, and what moving least squares puts in their place: D⁻¹ w r.
 #[test]
 fn k1_quadratic_kernel_table() {
-    let (_, rows) = table(include_str!("data/kernel_mls_reference.csv"));
+    let (_, rows) = table(include_str!("../data/kernel_mls_reference.csv"));
     assert_eq!(rows.len(), 9);
     let mut worst = 0.0_f64;
     for row in rows {
@@ -751,7 +750,7 @@ fn half_digit(value: f64) -> f64 {
 
 /// 500 substeps of the example against a run of its own kernels.
 fn k7_mpm88<E: Engine<2>>() {
-    let (names, rows) = table(include_str!("data/peer_taichi_mpm88_regression.csv"));
+    let (names, rows) = table(include_str!("../data/peer_taichi_mpm88_regression.csv"));
     let (cells, dt) = (128.0, 2e-4);
     let dx = 1.0 / cells;
     let separate = Contact::Separate { friction: 0.0 };

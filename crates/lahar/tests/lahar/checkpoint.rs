@@ -1,9 +1,7 @@
 //! A run that goes on from a checkpoint has the bits of one that was never interrupted.
 
-#[expect(dead_code, reason = "other tests use the rest")]
-mod common;
 
-use common::{ALL, bits, brawl, crowd};
+use crate::fixtures::{ALL, bits, brawl, crowd};
 use lahar::checkpoint::{Array, Values};
 use lahar::{
     AccelerationField, Checkpoint, Command, Contact, Diagnostics, Force, Gauge, Instance,
