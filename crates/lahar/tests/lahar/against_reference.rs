@@ -1,9 +1,8 @@
 //! The fast engine against the oracle, in every combination of dimension, kernel, transfer, force
 //! and material: what layout, lanes, rows, sorting and threads must not change.
 
-
-use crate::fixtures::{self, Random, ball, brawl, brawl_with_all_options};
 use crate::engine::{Engine, Fast, Oracle, State};
+use crate::fixtures::{self, Random, ball, brawl, brawl_with_all_options};
 use lahar::Instance;
 use lahar::material::VolumeRule;
 use lahar::{

@@ -1,6 +1,5 @@
 //! A run that goes on from a checkpoint has the bits of one that was never interrupted.
 
-
 use crate::fixtures::{ALL, bits, brawl, crowd};
 use lahar::checkpoint::{Array, Values};
 use lahar::{

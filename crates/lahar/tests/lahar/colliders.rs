@@ -1,16 +1,15 @@
 //! Colliders: a surface between nodes is where it is drawn, takes what the material loses, lets go of
 //! what leaves, and is not passed.
 
-
 use crate::fixtures::{self, CONTACTS, ball, brawl, crowd, one_of_each};
 
+use crate::walled::{SEPARATE, SLIP, both, field};
 use lahar::material::{Corotated, Fluid, lame};
 use lahar::particles::Field;
 use lahar::{
     Collider, Contact, Deformation, Domain, Instance, Material, Model, Motion, ParticleBatch,
     Setup, Simulate, Simulation, Solid, TimeStep, Transfer, WallStyle,
 };
-use crate::walled::{SEPARATE, SLIP, both, field};
 
 const DENSITY: f64 = 1000.0; // kg/m³
 const G: f64 = 9.81; // m/s²

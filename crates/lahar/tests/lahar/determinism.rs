@@ -1,6 +1,5 @@
 //! Same scene, same bits: over threads, over shifts by whole blocks, over looking at it.
 
-
 use crate::fixtures::{ALL, bits, brawl, brawl_with_all_options, crowd, run_on};
 use lahar::Instance;
 use lahar::particles::Field;

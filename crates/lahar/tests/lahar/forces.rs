@@ -1,8 +1,7 @@
 //! Forces besides gravity and stress: against formulas, against the oracle, and by their bits.
 
-
-use crate::fixtures::{self, brawl};
 use crate::engine::{Engine, Fast, Oracle, State};
+use crate::fixtures::{self, brawl};
 use lahar::material::Dust;
 use lahar::{
     AccelerationField, Force, Instance, Material, Model, ParticleBatch, Pull, Setup, Simulate,

@@ -2,7 +2,6 @@
 //!
 //! Each check is a function over [`Engine`]; the table at the end runs all of them on each engine.
 
-
 use crate::engine::{Engine, Fast, Numbers, Oracle, State, oracle_of, times};
 use lahar::boundary::{Contact, Domain, Sides, WallStyle};
 use lahar::kernel::{BSpline, Cubic, Linear, Quadratic};

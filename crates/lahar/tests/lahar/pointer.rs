@@ -1,6 +1,5 @@
 //! The hand that stirs: by its laws, and the engine against the oracle.
 
-
 use crate::fixtures::brawl;
 use lahar::material::Dust;
 use lahar::reference::Reference;

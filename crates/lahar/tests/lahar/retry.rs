@@ -1,6 +1,5 @@
 //! Frames that fail begin again with half the time step: what failed, what is tried, what is left.
 
-
 use crate::fixtures::{ALL, bits, brawl};
 use lahar::material::{Corotated, Dust, Fluid, lame};
 use lahar::{

@@ -1,7 +1,7 @@
 //! Walls on their planes: waves see them where they are drawn, a body at rest stays, and what leaves
 //! a `separate` wall leaves as if there were none.
 
-
+use crate::walled::{SEPARATE, SLIP, both, field};
 use lahar::material::{Corotated, Fluid, lame};
 use lahar::particles::Field;
 use lahar::{
@@ -9,7 +9,6 @@ use lahar::{
     Simulation, TimeStep, Transfer, WallStyle,
 };
 use std::f64::consts::PI;
-use crate::walled::{SEPARATE, SLIP, both, field};
 
 const DENSITY: f64 = 1000.0; // kg/m³
 
