@@ -7,6 +7,7 @@ mod colliders;
 mod decompositions;
 mod determinism;
 mod engine;
+mod equations;
 mod fixtures;
 mod forces;
 mod materials;

@@ -755,7 +755,7 @@ const PASTE: HerschelBulkley = HerschelBulkley {
     creep_rate: 0.1,
 };
 
-/// (14) against numbers computed apart: above the yield stress, below it, at rest; a Bingham fluid
+/// (17) against numbers computed apart: above the yield stress, below it, at rest; a Bingham fluid
 /// and a power law.
 #[test]
 fn viscosity_is_herschels_and_bulkleys() {
