@@ -11,7 +11,7 @@ use crate::boundary::walls::Walls;
 use crate::grid::{Grid, NodeForces, Tiles};
 use crate::material::{IsaToken, Law, Model, VolumeCorrection};
 use crate::math::Lanes;
-use crate::store::Group;
+use crate::particles::Group;
 use crate::transfer::gather::{Around, Bounds};
 use crate::transfer::scatter::What;
 use crate::transfer::{Scheme, gather, scatter, volume};

@@ -1,9 +1,6 @@
 //! Fluids, jelly and snow by the Moving Least Squares Material Point Method, in 2D and 3D.
 
 pub mod boundary;
-pub mod checkpoint;
-mod chunk;
-pub mod diagnostics;
 mod dispatch;
 pub mod error;
 mod float_mode;
@@ -16,33 +13,27 @@ pub mod math;
 mod parallel;
 pub mod particles;
 mod prefetch;
-pub mod probe;
-mod push;
 pub mod reference;
-mod retry;
 pub mod setup;
 pub mod simulation;
-mod snapshot;
-mod sort;
 mod state;
 mod step;
-mod store;
 mod transfer;
 
 pub use boundary::{
     BoundaryImpulse, Collider, Contact, Corners, Cushion, Domain, Keyframe, Motion, Sides, Solid,
     WallStyle,
 };
-pub use checkpoint::{Checkpoint, CheckpointError};
-pub use diagnostics::Diagnostics;
 pub use error::{DtLimit, Failure, SetupError};
 pub use forces::{AccelerationField, Force, Pull};
 pub use instance::Instance;
 pub use material::{Material, Model};
 pub use particles::{Data, Field, Snapshot};
-pub use probe::{Gauge, Plate, Probe, ProbeSample, ProbeSamples};
-pub use retry::{Retry, frame};
 pub use setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
 pub use simulation::{
     Advance, Command, Memory, PhaseTimes, Pointer, PointerAction, Simulate, Simulation,
 };
+pub use state::checkpoint::{self, Checkpoint, CheckpointError};
+pub use state::diagnostics::{self, Diagnostics};
+pub use state::probe::{self, Gauge, Plate, Probe, ProbeSample, ProbeSamples};
+pub use state::retry::{Retry, frame};

@@ -5,7 +5,7 @@
     reason = "the instruction takes an address; measured in docs/performance.md"
 )]
 
-use crate::chunk::Rows;
+use crate::particles::Rows;
 
 /// Bytes that memory is asked for at a time.
 const LINE: usize = 64;

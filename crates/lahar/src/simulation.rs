@@ -9,8 +9,6 @@ use crate::boundary::pointer::Push;
 use crate::boundary::surface::put_out;
 use crate::boundary::walls::Walls;
 use crate::boundary::{BoundaryImpulse, Collider};
-use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::diagnostics::Diagnostics;
 use crate::dispatch;
 use crate::error::{DtLimit, Failure, SetupError};
 use crate::forces::{self, Force};
@@ -18,13 +16,15 @@ use crate::grid::{Grid, NodeForces, NodePointer};
 use crate::instance::Instance;
 use crate::material::{IsaToken, Law, VolumeCorrection};
 use crate::math::Vector;
+use crate::particles::{DRIFT_LIMIT, Escaped, Sorter, in_range};
 use crate::particles::{Field, Snapshot};
-use crate::probe::{self, ProbeSamples, Readings};
-use crate::retry::{Mark, Retry};
+use crate::particles::{Group, Layout, PerParticle, Run, block_edge, locate};
 use crate::setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
-use crate::sort::{DRIFT_LIMIT, Escaped, Sorter, in_range};
-use crate::step::StepControl;
-use crate::store::{Group, Layout, PerParticle, Run, block_edge, locate};
+use crate::state::checkpoint::{Checkpoint, CheckpointError};
+use crate::state::diagnostics::Diagnostics;
+use crate::state::probe::{self, ProbeSamples, Readings};
+use crate::state::retry::{Mark, Retry};
+use crate::state::time_step::StepControl;
 use crate::transfer::Scheme;
 use crate::transfer::gather::{Around, MOST_CELLS};
 use crate::transfer::scatter::What;
@@ -1157,12 +1157,12 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
     }
 
     fn snapshot(&self, fields: &[Field]) -> Snapshot {
-        crate::snapshot::snapshot(self, fields)
+        crate::state::snapshot::snapshot(self, fields)
     }
 
     fn diagnostics(&mut self) -> Diagnostics {
         self.sort_if_drifted();
-        crate::diagnostics::measure(self)
+        crate::state::diagnostics::measure(self)
     }
 
     fn boundary_impulses(&self) -> Vec<BoundaryImpulse> {

@@ -7,8 +7,8 @@ use crate::boundary::walls::{Plane, Walls};
 use crate::dispatch::on_level;
 use crate::material::IsaToken;
 use crate::math::{Lanes, Mask, Real, Vector};
+use crate::particles::block_edge;
 use crate::prefetch::prefetch;
-use crate::store::block_edge;
 use fearless_simd::Simd;
 
 /// The most columns of a wall that pass a block: those of 3D.

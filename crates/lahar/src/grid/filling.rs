@@ -9,7 +9,7 @@ use crate::boundary::walls::Walls;
 use crate::material::IsaToken;
 use crate::math::Lanes;
 use crate::parallel;
-use crate::store::block_edge;
+use crate::particles::block_edge;
 use crate::transfer::TileCopy;
 
 /// A node whose cell is less full than this is outside of the bodies. Far from both 0 and 1, so that

@@ -271,7 +271,7 @@ mod tests {
         links.find(tiles, tile_edge, &period, &mut blocks);
         assert!(blocks.is_sorted_by(|a, b| a < b));
 
-        let edge = crate::store::block_edge(D) as i64;
+        let edge = crate::particles::block_edge(D) as i64;
         let mut of_blocks: BTreeMap<[i32; D], Vec<([i32; D], u32)>> = BTreeMap::new();
         for (tile, block) in tiles.iter().enumerate() {
             let mut seen = BTreeSet::new();

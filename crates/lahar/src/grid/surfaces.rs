@@ -5,7 +5,7 @@ use crate::boundary::collider::Moving;
 use crate::boundary::surface::{BAND, NearNode, Room, hold, near};
 use crate::boundary::walls::Walls;
 use crate::math::{Lanes, Vector};
-use crate::store::block_edge;
+use crate::particles::block_edge;
 
 /// No node, or no block.
 const NONE: u32 = u32::MAX;

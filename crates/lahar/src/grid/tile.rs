@@ -1,7 +1,7 @@
 //! Tiles: what is fixed about them, and how much of each its particles reach.
 
 use super::QUAD;
-use crate::store::block_edge;
+use crate::particles::block_edge;
 
 /// Nodes behind a tile, so that the row of four at its very end stays inside.
 const TILE_PADDING: usize = 4;

@@ -6,9 +6,9 @@
 //! crate run as fast as ours.
 
 use super::{ConstitutiveModel, Model, Strain, VolumeCorrection, VolumeRule, for_model};
-use crate::chunk::{Largest, Rows};
 use crate::dispatch::on_level;
 use crate::math::{Lanes, Matrix, Vector};
+use crate::particles::{Largest, Rows};
 use core::ops::Deref;
 use fearless_simd::{Level, Simd};
 

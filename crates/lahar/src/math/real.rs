@@ -160,9 +160,9 @@ pub trait Scalar:
     /// As a column of a snapshot.
     fn data(values: Vec<Self>) -> crate::particles::Data;
     /// As an array of a checkpoint.
-    fn values(values: Vec<Self>) -> crate::checkpoint::Values;
+    fn values(values: Vec<Self>) -> crate::state::checkpoint::Values;
     /// From an array of a checkpoint, if it is of this type.
-    fn from_values(values: crate::checkpoint::Values) -> Option<Vec<Self>>;
+    fn from_values(values: crate::state::checkpoint::Values) -> Option<Vec<Self>>;
     /// e to the power self, the same bits on every machine.
     fn exp_scalar(self) -> Self;
     /// Natural logarithm, the same bits on every machine.
@@ -250,12 +250,12 @@ macro_rules! scalar {
             fn data(values: Vec<Self>) -> crate::particles::Data {
                 crate::particles::Data::$variant(values)
             }
-            fn values(values: Vec<Self>) -> crate::checkpoint::Values {
-                crate::checkpoint::Values::$variant(values)
+            fn values(values: Vec<Self>) -> crate::state::checkpoint::Values {
+                crate::state::checkpoint::Values::$variant(values)
             }
-            fn from_values(values: crate::checkpoint::Values) -> Option<Vec<Self>> {
+            fn from_values(values: crate::state::checkpoint::Values) -> Option<Vec<Self>> {
                 match values {
-                    crate::checkpoint::Values::$variant(values) => Some(values),
+                    crate::state::checkpoint::Values::$variant(values) => Some(values),
                     _ => None,
                 }
             }

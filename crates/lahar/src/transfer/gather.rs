@@ -7,16 +7,16 @@ use crate::boundary::impulse::Taken;
 use crate::boundary::pointer::Push;
 use crate::boundary::surface::put_out;
 use crate::boundary::walls::Walls;
-use crate::chunk::{AHEAD, CHUNK, Largest, Padded, close_chunk, open_chunk};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_vector};
 use crate::math::{Lanes, Mask, Matrix, Real, Vector};
 use crate::parallel;
+use crate::particles::in_range;
+use crate::particles::{AHEAD, CHUNK, Largest, Padded, close_chunk, open_chunk};
+use crate::particles::{ColumnsMut, Group, Layout, PerParticle, Run, block_edge, split_runs};
 use crate::prefetch::prefetch_chunk;
 use crate::setup::Transfer;
-use crate::sort::in_range;
-use crate::store::{ColumnsMut, Group, Layout, PerParticle, Run, block_edge, split_runs};
 use fearless_simd::Simd;
 
 /// What a gather found out, for the next time step and for the sort.

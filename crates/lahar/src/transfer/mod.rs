@@ -17,12 +17,12 @@ pub(crate) mod rows;
 pub(crate) mod scatter;
 pub(crate) mod volume;
 
-use crate::chunk::{CHUNK, Rows};
 use crate::grid::{Grid, tile_edge, tile_plane};
 use crate::kernel::BSpline;
 use crate::math::Lanes;
+use crate::particles::Run;
+use crate::particles::{CHUNK, Rows};
 use crate::setup::{ForceForm, Kernel, Transfer};
-use crate::store::Run;
 use fearless_simd::Simd;
 
 /// Numbers of the largest tile: cubic in 3D, two planes.

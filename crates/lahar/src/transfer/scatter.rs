@@ -1,15 +1,15 @@
 //! Particles to grid: (1)–(4).
 
 use super::{Scheme, Stage, rows, with_scheme};
-use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows};
 use crate::grid::{Reach, Tiles, tile_edge};
 use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_matrix, load_vector};
 use crate::math::{Lanes, Matrix, Real, Vector};
 use crate::parallel;
+use crate::particles::{AHEAD, CHUNK, Chunk, Padded, Rows};
+use crate::particles::{Group, Layout, Run, block_edge, slices, split_runs};
 use crate::prefetch::prefetch_chunk;
 use crate::setup::{ForceForm, Transfer};
-use crate::store::{Group, Layout, Run, block_edge, slices, split_runs};
 use fearless_simd::Simd;
 
 /// What is scattered.

@@ -6,7 +6,6 @@
 use super::rows::gather_quad;
 use super::scatter::stencil;
 use super::{Scheme, Stage, TileCopy};
-use crate::chunk::{AHEAD, CHUNK, Chunk, Padded, Rows, pad};
 use crate::dispatch::{on_level, on_portable};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
@@ -14,9 +13,10 @@ use crate::material::rheology::shear_rate;
 use crate::material::{IsaToken, VolumeCorrection, load_matrix, load_vector};
 use crate::math::{Lanes, Real};
 use crate::parallel;
+use crate::particles::{AHEAD, CHUNK, Chunk, Padded, Rows, pad};
+use crate::particles::{Group, Layout, Run, slices, split_runs};
 use crate::prefetch::prefetch_chunk;
 use crate::setup::Kernel;
-use crate::store::{Group, Layout, Run, slices, split_runs};
 use fearless_simd::Simd;
 
 /// Writes J − 1 of every row of `group` to `out`, by what the grid's nodes hold of rest volume (first

@@ -6,15 +6,22 @@
 //!   grid, tiles, buffers: not kept, since they follow from where the runs are
 //! ```
 
+pub mod checkpoint;
+pub mod diagnostics;
+pub mod probe;
+pub(crate) mod retry;
+pub(crate) mod snapshot;
+pub(crate) mod time_step;
+
 use crate::boundary::impulse::Taken;
 use crate::instance::Instance;
 use crate::math::Lanes;
 use crate::parallel;
-use crate::probe::Readings;
+use crate::particles::Escaped;
+use crate::particles::{Group, PerParticle, Run};
 use crate::simulation::{Pointer, Simulation};
-use crate::sort::Escaped;
-use crate::step::StepControl;
-use crate::store::{Group, PerParticle, Run};
+use crate::state::probe::Readings;
+use crate::state::time_step::StepControl;
 
 /// The state between two substeps. Rows are kept in their order and sorted as long ago as they are:
 /// what follows has the same bits.

@@ -2,9 +2,9 @@
 
 use crate::instance::Instance;
 use crate::parallel;
+use crate::particles::{Group, Layout, PerParticle, Run};
 use crate::setup::Transfer;
 use crate::simulation::{Simulation, three};
-use crate::store::{Group, Layout, PerParticle, Run};
 
 /// Totals at one moment. Vectors have three components; in 2D the third is zero, and angular
 /// momentum is its third component.

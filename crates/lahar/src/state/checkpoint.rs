@@ -11,11 +11,11 @@
 use crate::boundary::impulse::Taken;
 use crate::instance::Instance;
 use crate::math::Vector;
-use crate::probe::{ProbeSample, Readings};
+use crate::particles::{DRIFT_LIMIT, Escaped, in_range};
+use crate::particles::{Group, Layout, PerParticle, Run, block_edge};
 use crate::simulation::{Pointer, PointerAction, Simulation};
-use crate::sort::{DRIFT_LIMIT, Escaped, in_range};
+use crate::state::probe::{ProbeSample, Readings};
 use crate::state::{Rows, State};
-use crate::store::{Group, Layout, PerParticle, Run, block_edge};
 use crate::transfer::gather::MOST_CELLS;
 use core::fmt;
 

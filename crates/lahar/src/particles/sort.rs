@@ -7,7 +7,7 @@
 
 use crate::boundary::walls::Walls;
 use crate::math::Lanes;
-use crate::store::{BLOCK_LIMIT, ColumnsMut, Group, PerParticle, Run, block_edge};
+use crate::particles::{BLOCK_LIMIT, ColumnsMut, Group, PerParticle, Run, block_edge};
 use core::ops::Range;
 use core::sync::atomic::{AtomicU32, Ordering};
 use std::collections::HashMap;

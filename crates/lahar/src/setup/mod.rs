@@ -3,7 +3,7 @@
 use crate::boundary::{Collider, Corners, Cushion, Domain};
 use crate::forces::Force;
 use crate::material::Material;
-use crate::probe::Probe;
+use crate::state::probe::Probe;
 
 /// Everything but the particles. SI units; in 2D per metre of depth.
 #[derive(Clone, Debug)]

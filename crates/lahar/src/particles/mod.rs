@@ -1,5 +1,16 @@
 //! Particles: the one table of their fields, storage, and snapshots for everything outside.
 
+mod chunk;
+mod sort;
+mod store;
+
+pub(crate) use chunk::{AHEAD, CHUNK, Chunk, Largest, Padded, Rows, close_chunk, open_chunk, pad};
+pub(crate) use sort::{DRIFT_LIMIT, Escaped, Sorter, in_range};
+pub(crate) use store::{
+    BLOCK_LIMIT, ColumnsMut, Group, Layout, MOST_COLUMNS, PerParticle, Run, block_edge, locate,
+    slices, split_runs,
+};
+
 /// What a particle has, as exports, checkpoints and plots name it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Field {

@@ -13,9 +13,9 @@
 //! World positions exist at the public interface only. In f32 they could not tell neighbours apart
 //! far from the origin, nor move what is slow near it.
 
-use crate::chunk::{CHUNK, Rows, pad};
 use crate::material::Law;
 use crate::math::Lanes;
+use crate::particles::{CHUNK, Rows, pad};
 
 /// Nodes along the edge of a block: 64 nodes a block in 2D and in 3D.
 pub(crate) const fn block_edge(dimension: usize) -> usize {

@@ -4,8 +4,8 @@
 use super::{Gauge, Plate};
 use crate::instance::Instance;
 use crate::kernel::{BSpline, Quadratic};
+use crate::particles::{Group, Layout, Run, block_edge};
 use crate::simulation::Simulation;
-use crate::store::{Group, Layout, Run, block_edge};
 
 /// Cells that a particle may be out of its block between sorts.
 const DRIFT: f64 = 1.0;
@@ -369,7 +369,7 @@ fn mean_height<T: Instance<D>, const D: usize>(
     up: usize,
 ) -> f64 {
     simulation.sort_if_drifted();
-    let volume = crate::diagnostics::filled_volume(simulation);
+    let volume = crate::state::diagnostics::filled_volume(simulation);
     simulation.origin[up] + volume / across(simulation, |axis| axis != up)
 }
 

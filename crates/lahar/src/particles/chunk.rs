@@ -1,7 +1,7 @@
 //! A few particles at a time, read and written by whole registers.
 
 use crate::math::{Lanes, Real};
-use crate::store::{ColumnsMut, MOST_COLUMNS};
+use crate::particles::{ColumnsMut, MOST_COLUMNS};
 use fearless_simd::Simd;
 
 /// Particles worked on between two looks at the tile.
@@ -157,7 +157,7 @@ mod tests {
     use super::{CHUNK, Largest, Padded, close_chunk, open_chunk};
     use crate::dispatch::on_portable;
     use crate::math::Lanes;
-    use crate::store::ColumnsMut;
+    use crate::particles::ColumnsMut;
 
     #[test]
     fn the_largest_is_not_lost_nor_what_is_no_number() {

@@ -3,8 +3,8 @@
 use crate::instance::Instance;
 use crate::parallel;
 use crate::particles::{Data, Field, Snapshot};
+use crate::particles::{Group, Layout};
 use crate::simulation::Simulation;
-use crate::store::{Group, Layout};
 
 /// Where a particle lies.
 #[derive(Clone, Copy)]

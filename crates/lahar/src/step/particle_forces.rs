@@ -4,8 +4,8 @@ use crate::forces;
 use crate::instance::Instance;
 use crate::math::Vector;
 use crate::parallel;
+use crate::particles::{ColumnsMut, Group, Layout, Run, split_runs};
 use crate::simulation::Simulation;
-use crate::store::{ColumnsMut, Group, Layout, Run, split_runs};
 
 /// Particles that forces are asked about at a time.
 const ROWS: usize = 64;

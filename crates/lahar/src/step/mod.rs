@@ -1,0 +1,3 @@
+//! The substep.
+
+mod particle_forces;
