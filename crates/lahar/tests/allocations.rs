@@ -1,10 +1,10 @@
-//! A substep asks the system for no memory, once its buffers have grown.
+//! A substep allocates no memory once its buffers have grown.
 
 #[path = "lahar/fixtures.rs"]
-#[expect(dead_code, reason = "other tests use the rest")]
+#[expect(dead_code, reason = "the other tests of the crate use the rest")]
 mod fixtures;
 
-use fixtures::{brawl, brawl_with_all_options, crowd};
+use fixtures::{brawl, brawl_with_all_options, colliders_of_all_kinds};
 use lahar::{
     AccelerationField, Contact, Force, Instance, ParticleBatch, Pull, Setup, Simulate, Simulation,
     Transfer,
@@ -16,11 +16,11 @@ use std::sync::Arc;
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Pulls particles to where they started.
+/// Pulls each particle toward its starting position.
 #[derive(Debug)]
-struct HomeSick;
+struct Homesick;
 
-impl AccelerationField<2> for HomeSick {
+impl AccelerationField<2> for Homesick {
     fn accelerations(&self, _: f64, at: &[[f64; 2]], starts: &[[f64; 2]], out: &mut [[f64; 2]]) {
         for ((a, x), start) in out.iter_mut().zip(at).zip(starts) {
             *a = [0, 1].map(|i| 3.0 * (start[i] - x[i]));
@@ -32,7 +32,8 @@ impl AccelerationField<2> for HomeSick {
     }
 }
 
-/// Substeps that allocate, of the last ones that do not sort, and how many there are of these.
+/// Runs 600 substeps and looks at those of the second half that do not sort: returns how many of them allocate, and
+/// how many there are.
 fn allocating<T: Instance<D>, const D: usize>(
     (setup, batches): (Setup<D>, Vec<ParticleBatch<D>>),
 ) -> (usize, usize) {
@@ -50,20 +51,20 @@ fn allocating<T: Instance<D>, const D: usize>(
     }
     assert!(
         simulation.phase_times().sorts > 2,
-        "buffers have not been used twice"
+        "the buffers have not been used twice"
     );
     (allocating, unsorted)
 }
 
-/// One test, since others at the same time would be counted too. In a pool: to be called from outside takes
-/// rayon an allocation now and then.
+/// All scenes are one test, since a test that runs at the same time would be counted too. It runs inside a thread pool:
+/// rayon allocates now and then when a call comes from outside.
 #[test]
 fn a_substep_allocates_nothing() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build();
     pool.expect("two threads").install(|| {
-        let none = |what: &str, (allocating, of): (usize, usize)| {
-            assert!(of > 200, "{what}: only {of} substeps without a sort");
-            assert_eq!(allocating, 0, "{what}: so many of {of} substeps allocate");
+        let none = |scene: &str, (allocating, of): (usize, usize)| {
+            assert!(of > 200, "{scene}: only {of} substeps without a sort");
+            assert_eq!(allocating, 0, "{scene}: substeps of {of} that allocate");
         };
         none("2D", allocating::<f32, 2>(brawl(64)));
         none("3D", allocating::<f32, 3>(brawl(24)));
@@ -83,12 +84,13 @@ fn a_substep_allocates_nothing() {
         none("FLIP in a field", allocating::<f64, 2>((setup, batches)));
 
         let (mut setup, batches) = brawl(64);
-        setup.forces = vec![Force::Field(Arc::new(HomeSick))];
+        setup.forces = vec![Force::Field(Arc::new(Homesick))];
         none("pushed home", allocating::<f32, 2>((setup, batches)));
 
-        // The nodes around colliders are now more, now fewer: room for the most has to be found first.
+        // The number of nodes near colliders varies, so buffers grow until they have held the largest number.
         let (mut setup, batches) = brawl(64);
-        setup.colliders = crowd(64.0 * setup.dx, Contact::Separate { friction: 0.2 });
+        setup.colliders =
+            colliders_of_all_kinds(64.0 * setup.dx, Contact::Separate { friction: 0.2 });
         let (allocating, of) = allocating::<f32, 2>((setup, batches));
         assert!(
             allocating * 10 < of,

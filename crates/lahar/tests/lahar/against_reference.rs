@@ -1,5 +1,5 @@
-//! The fast engine against the oracle, in every combination of dimension, kernel, transfer, force
-//! and material: what layout, lanes, rows, sorting and threads must not change.
+//! The engine against the oracle, in every combination of dimension, kernel, transfer, force and material: storage,
+//! lanes, rows, sorting and threads must not change the results beyond rounding.
 
 use crate::engine::{Engine, Fast, Oracle, State};
 use crate::fixtures::{self, Random, ball, brawl, brawl_with_all_options};
@@ -10,11 +10,11 @@ use lahar::{
     Simulation, TimeStep, Transfer, WallStyle,
 };
 
-/// What a field is measured by at the least, lest noise be compared with noise: a cell, a slow
-/// speed, that over a cell, and strain of a percent.
+/// The smallest scale that the difference of a field is divided by, so that noise is not compared with noise: a cell,
+/// a slow speed, that speed over a cell, F, and a strain of one percent.
 const SCALES: [f64; 5] = [1.0 / 32.0, 0.1, 3.2, 1.0, 0.01];
 
-/// The largest difference of any field, each relative to that field's own largest value.
+/// Returns the largest difference of any field, relative to that field's own largest value.
 fn worst<const D: usize>(a: &[State<D>], b: &[State<D>]) -> f64 {
     assert_eq!(a.len(), b.len());
     let fields = |p: &State<D>| -> Vec<Vec<f64>> {
@@ -44,7 +44,7 @@ fn worst<const D: usize>(a: &[State<D>], b: &[State<D>]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// Runs both and returns the worst difference.
+/// Runs engine and oracle for `steps` substeps and returns the worst difference.
 fn compare<T: Instance<D>, const D: usize>(
     setup: &Setup<D>,
     batches: &[ParticleBatch<D>],
@@ -59,7 +59,7 @@ fn compare<T: Instance<D>, const D: usize>(
     worst(&oracle.particles(), &fast.particles())
 }
 
-/// Balls of every material in a small box: all kernels, forces and transfers that there are.
+/// Compares on balls of every material in a small box, with all kernels, forces and transfers.
 fn every_scheme<T: Instance<D>, const D: usize>(cells: usize, steps: usize, limit: f64) {
     let (mut setup, batches) = brawl::<D>(cells);
     setup.time_step = TimeStep::Fixed(4e-4);
@@ -77,7 +77,7 @@ fn every_scheme<T: Instance<D>, const D: usize>(cells: usize, steps: usize, limi
             Transfer::Apic,
         ] {
             (setup.kernel, setup.force, setup.transfer) = (kernel, force, transfer);
-            // The linear kernel with stress is not stable at free surfaces: dust only.
+            // Stress is not stable at free surfaces with the linear kernel, so it is tested with dust only.
             let batches: Vec<_> = batches
                 .iter()
                 .filter(|b| kernel != Kernel::Linear || b.material == 4)
@@ -112,7 +112,7 @@ fn every_scheme_3d_f32() {
     every_scheme::<f32, 3>(16, 8, 2e-4);
 }
 
-/// Each material alone, on each instruction set, long enough to be sorted several times.
+/// Compares each material alone on each instruction set, for so long that particles are sorted several times.
 fn every_material<const D: usize>(cells: usize, steps: usize)
 where
     f64: Instance<D>,
@@ -143,7 +143,7 @@ fn every_material_3d() {
     every_material::<3>(16, 40);
 }
 
-/// What is off by default, in every kernel and transfer.
+/// Compares with the options that are off by default, in every kernel and transfer.
 fn all_options<T: Instance<D>, const D: usize>(cells: usize, steps: usize, limit: f64) {
     let (mut setup, batches) = brawl_with_all_options::<D>(cells);
     setup.time_step = TimeStep::Fixed(4e-4);
@@ -179,14 +179,14 @@ fn all_options_3d_f32() {
     all_options::<f32, 3>(16, 8, 2e-4);
 }
 
-/// Colliders of all shapes and motions, with every contact.
+/// Compares among colliders of all shapes and motions, with every contact.
 fn among_colliders<T: Instance<D>, const D: usize>(cells: usize, steps: usize, limit: f64) {
     for contact in fixtures::CONTACTS {
         for transfer in [Transfer::Flip { blend: 0.95 }, Transfer::Apic] {
             let (mut setup, batches) = brawl::<D>(cells);
             setup.time_step = TimeStep::Fixed(4e-4);
             setup.transfer = transfer;
-            setup.colliders = fixtures::crowd(setup.dx * cells as f64, contact);
+            setup.colliders = fixtures::colliders_of_all_kinds(setup.dx * cells as f64, contact);
             let difference = compare::<T, D>(&setup, &batches, steps);
             assert!(
                 difference < limit,
@@ -206,13 +206,13 @@ fn among_colliders_3d_f64() {
     among_colliders::<f64, 3>(20, 12, 1e-9);
 }
 
-/// Rounding decides at some nodes whether they stick.
+/// The tolerance is wider here: at some nodes rounding decides whether they stick.
 #[test]
 fn among_colliders_3d_f32() {
     among_colliders::<f32, 3>(20, 8, 2e-3);
 }
 
-/// A periodic axis whose length is no whole number of blocks, crossed several times.
+/// Compares while particles cross a periodic axis several times; its length is not a whole number of blocks.
 fn periodic<const D: usize>(cells: usize)
 where
     f64: Instance<D>,
@@ -232,8 +232,8 @@ where
         style: WallStyle::Plane,
     });
     setup.time_step = TimeStep::Fixed(5e-4);
-    // At the seam, and moving through it.
-    setup.colliders = fixtures::crowd(size, Contact::Separate { friction: 0.1 });
+    // Some colliders lie at the seam and move through it.
+    setup.colliders = fixtures::colliders_of_all_kinds(size, Contact::Separate { friction: 0.1 });
     setup.colliders.remove(0);
     for batch in &mut batches {
         batch.velocity[0][0] = 6.0;
@@ -241,7 +241,7 @@ where
     let steps = 260_u16;
     assert!(
         6.0 * 5e-4 * f64::from(steps) > 1.5 * size,
-        "the particles must go round"
+        "the particles must cross the seam"
     );
     let difference = compare::<f64, D>(&setup, &batches[..2], usize::from(steps));
     assert!(difference < 1e-7, "{difference:e}");
@@ -278,9 +278,9 @@ fn particles_leave_through_open_sides_and_are_counted() {
 }
 
 #[test]
-fn a_value_that_is_no_number_stops_the_run_and_names_the_particle() {
+fn a_non_finite_value_stops_the_run_and_names_the_particle() {
     let (mut setup, mut batches) = brawl::<2>(32);
-    // Far too long a step: the solids blow up.
+    // The step is far too long, so the solids blow up.
     setup.time_step = TimeStep::Fixed(0.2);
     batches[1].velocity = vec![[1e3, 0.0]];
     let mut simulation = Simulation::<f32, 2>::new(setup, &batches).expect("a good setup");
@@ -288,17 +288,17 @@ fn a_value_that_is_no_number_stops_the_run_and_names_the_particle() {
         .find_map(|_| simulation.substep().err())
         .expect("it must blow up");
     assert!(failure.position.iter().all(|x| x.is_finite()), "{failure}");
-    let said = failure.to_string();
+    let message = failure.to_string();
     assert!(
-        said.contains("substep") && said.contains("limited by fixed"),
-        "{said}"
+        message.contains("substep") && message.contains("limited by fixed"),
+        "{message}"
     );
-    // What is there can still be looked at.
+    // The state can still be read.
     let _ = simulation.snapshot(&[lahar::Field::Position, lahar::Field::Velocity]);
 }
 
-/// Water that turns in a corner, with snow in it: its volume is set right several times, at walls, in
-/// the corner, at the free surface and beside the snow.
+/// Compares on water that turns in a corner with snow in it. Its volume is corrected several times: at walls, in the
+/// corner, at the free surface and beside the snow.
 fn corrected_volume<T: Instance<D>, const D: usize>(limit: f64) {
     let (mut setup, mut batches) = brawl::<D>(16);
     setup.time_step = TimeStep::Fixed(1e-3);
@@ -351,15 +351,15 @@ fn corrected_volume<T: Instance<D>, const D: usize>(limit: f64) {
                 "{kernel:?} {transfer:?}: {difference:e}"
             );
             let mut corrected = Fast::<T, D>::new(&setup, &batches);
-            let mut left_alone = Fast::<T, D>::new(&plain(&setup), &batches);
+            let mut uncorrected = Fast::<T, D>::new(&plain(&setup), &batches);
             for _ in 0..steps {
                 corrected.substep();
-                left_alone.substep();
+                uncorrected.substep();
             }
-            let effect = worst(&corrected.particles(), &left_alone.particles());
+            let effect = worst(&corrected.particles(), &uncorrected.particles());
             assert!(
                 effect > 100.0 * limit,
-                "the correction must be seen: {effect:e}"
+                "the correction must have an effect: {effect:e}"
             );
         }
     }

@@ -1,6 +1,6 @@
-//! A run that goes on from a checkpoint has the bits of one that was never interrupted.
+//! A run that is resumed from a checkpoint has the bits of one that was never interrupted.
 
-use crate::fixtures::{ALL, bits, brawl, crowd};
+use crate::fixtures::{ALL, bits, brawl, colliders_of_all_kinds};
 use lahar::checkpoint::{Array, Values};
 use lahar::{
     AccelerationField, Checkpoint, Command, Contact, Diagnostics, Force, Gauge, Instance,
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 const FRAME: f64 = 0.02;
 
-/// A pull to where each particle started.
+/// Pulls each particle toward its starting position.
 #[derive(Debug)]
 struct Spring;
 
@@ -26,11 +26,11 @@ impl<const D: usize> AccelerationField<D> for Spring {
     }
 }
 
-/// Everything that is state: colliders, forces from where particles started, gauges of every kind.
+/// A scene with every kind of state: colliders, forces that depend on starting positions, and gauges.
 fn eventful<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatch<D>>) {
     let (mut setup, batches) = brawl::<D>(cells);
     let size = setup.dx * cells as f64;
-    setup.colliders = crowd(size, Contact::Separate { friction: 0.3 });
+    setup.colliders = colliders_of_all_kinds(size, Contact::Separate { friction: 0.3 });
     setup.forces = vec![Force::Field(Arc::new(Spring))];
     let probe = |name: &str, rate, gauge| Probe {
         name: name.into(),
@@ -73,15 +73,15 @@ fn eventful<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatch<D>>) {
     (setup, batches)
 }
 
-/// What a frame leaves.
-type Left = (Vec<u64>, Diagnostics, Vec<ProbeSamples>, u64);
+/// The results of a frame: bits of the particles, totals, probe samples, and the number of substeps.
+type FrameResult = (Vec<u64>, Diagnostics, Vec<ProbeSamples>, u64);
 
-/// Frames `first..=last`, on `threads` threads.
+/// Runs the frames with these numbers on `threads` threads.
 fn frames(
     simulation: &mut dyn Simulate,
     threads: usize,
     numbers: core::ops::RangeInclusive<u32>,
-) -> Vec<Left> {
+) -> Vec<FrameResult> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     let pool = pool.build().expect("a pool");
     pool.install(|| {
@@ -106,9 +106,9 @@ fn fresh<T: Instance<D>, const D: usize>(
     Simulation::new(setup.clone(), batches).expect("a good setup")
 }
 
-/// From a checkpoint at any frame, on another number of threads, everything is the same; and a run that
-/// writes checkpoints is the same as one that does not.
-fn goes_on_with_the_same_bits<T: Instance<D>, const D: usize>(
+/// Checks that a run resumed from a checkpoint at any frame, on another number of threads, has the same results, and
+/// that a run that writes checkpoints has the results of one that does not.
+fn resumes_with_the_same_bits<T: Instance<D>, const D: usize>(
     scene: &(Setup<D>, Vec<ParticleBatch<D>>),
 ) {
     const FRAMES: u32 = 6;
@@ -120,13 +120,15 @@ fn goes_on_with_the_same_bits<T: Instance<D>, const D: usize>(
         let drift = checkpoint.arrays.iter().find(|array| array.name == "drift");
         drifted += usize::from(drift.expect("it is there").values != Values::F64(vec![0.0]));
         let mut second = fresh::<T, D>(scene);
-        second.resume(checkpoint.clone()).expect("it is whole");
+        second
+            .resume(checkpoint.clone())
+            .expect("a sound checkpoint");
         assert_eq!(second.checkpoint(), checkpoint);
         let threads = 1 + stop as usize % 2;
         let mut left = frames(&mut second, threads, stop + 1..=FRAMES);
         let mut expected = unbroken[stop as usize..].to_vec();
         if stop == 0 {
-            // The readings at the start were not taken by anyone: they wait, in both.
+            // Nobody has taken the readings at the start yet, so both runs still return them.
             assert!(left[0].2.iter().all(|probe| probe.samples[0].time == 0.0));
         }
         assert!(left == expected, "from frame {stop}");
@@ -134,9 +136,9 @@ fn goes_on_with_the_same_bits<T: Instance<D>, const D: usize>(
             first.boundary_impulses().len(),
             2 * D + scene.0.colliders.len()
         );
-        // The second run is itself broken off and gone on with.
+        // The resumed run is interrupted and resumed once more.
         let mut third = fresh::<T, D>(scene);
-        third.resume(checkpoint).expect("it is whole");
+        third.resume(checkpoint).expect("a sound checkpoint");
         left = frames(&mut third, 1, stop + 1..=stop + 1);
         expected.truncate(1);
         assert!(left == expected, "frame {} alone", stop + 1);
@@ -145,44 +147,44 @@ fn goes_on_with_the_same_bits<T: Instance<D>, const D: usize>(
     }
     assert!(
         drifted > 2,
-        "rows were sorted long ago in {drifted} checkpoints only"
+        "only {drifted} checkpoints lie between two sorts"
     );
 }
 
 #[test]
-fn goes_on_with_the_same_bits_2d() {
-    goes_on_with_the_same_bits::<f32, 2>(&eventful(32));
-    goes_on_with_the_same_bits::<f64, 2>(&eventful(32));
+fn resumes_with_the_same_bits_2d() {
+    resumes_with_the_same_bits::<f32, 2>(&eventful(32));
+    resumes_with_the_same_bits::<f64, 2>(&eventful(32));
 }
 
 #[test]
-fn goes_on_with_the_same_bits_3d() {
-    goes_on_with_the_same_bits::<f32, 3>(&eventful(16));
-    goes_on_with_the_same_bits::<f64, 3>(&eventful(16));
+fn resumes_with_the_same_bits_3d() {
+    resumes_with_the_same_bits::<f32, 3>(&eventful(16));
+    resumes_with_the_same_bits::<f64, 3>(&eventful(16));
 }
 
-/// The shortened step of a frame that failed, and how it recovers, are kept.
+/// A checkpoint keeps a step that a retry has shortened, and how far it has recovered.
 #[test]
-fn a_shortened_step_goes_on() {
+fn a_shortened_step_survives_a_checkpoint() {
     let (mut setup, batches) = brawl::<2>(16);
     setup.time_step = TimeStep::Fixed(FRAME / 4.0);
     let scene = (setup, batches);
     let unbroken = frames(&mut fresh::<f32, 2>(&scene), 1, 1..=12);
     let retried = unbroken.iter().filter(|left| left.1.dt_limit == "retry");
-    assert!(retried.count() > 3, "the step is too short to fail");
+    assert!(retried.count() > 3, "too few frames fail at this step");
     let mut simulation = fresh::<f32, 2>(&scene);
     for number in 1..=12 {
         let checkpoint = simulation.checkpoint();
         simulation = fresh(&scene);
-        simulation.resume(checkpoint).expect("it is whole");
+        simulation.resume(checkpoint).expect("a sound checkpoint");
         let left = frames(&mut simulation, 1, number..=number);
         assert!(left[0] == unbroken[number as usize - 1], "frame {number}");
     }
 }
 
-/// Gravity as it was turned, fluids as they were stiffened and the hand as it lies are kept.
+/// A checkpoint keeps gravity, the stiffness of fluids and the pointer as commands have set them.
 #[test]
-fn what_was_ordered_goes_on() {
+fn commands_survive_a_checkpoint() {
     let scene = brawl::<2>(32);
     let mut one = fresh::<f32, 2>(&scene);
     one.command(Command::Gravity([3.0, 0.5, 0.0]));
@@ -207,7 +209,7 @@ fn what_was_ordered_goes_on() {
             action,
         })));
         let mut two = fresh::<f32, 2>(&scene);
-        two.resume(one.checkpoint()).expect("it is whole");
+        two.resume(one.checkpoint()).expect("a sound checkpoint");
         assert_eq!(two.gravity(), [3.0, 0.5, 0.0]);
         let from = (one.time() / FRAME).round() as u32;
         let ends = [&mut one, &mut two].map(|s| frames(s, 1, from + 1..=from + 2));
@@ -215,9 +217,9 @@ fn what_was_ordered_goes_on() {
     }
 }
 
-/// Whoever stops in a frame can go back to its start; what follows is the same.
+/// A frame that is stopped can be taken back to its start, and the run then continues as if it had not begun.
 #[test]
-fn a_frame_given_up_is_as_if_it_had_not_begun() {
+fn a_frame_that_is_given_up_leaves_no_trace() {
     let scene = eventful::<2>(32);
     let unbroken = frames(&mut fresh::<f32, 2>(&scene), 1, 1..=3);
     let mut simulation = fresh::<f32, 2>(&scene);
@@ -241,7 +243,7 @@ fn a_frame_given_up_is_as_if_it_had_not_begun() {
     assert!(left == unbroken[1..]);
 }
 
-/// One array less, or other than it was.
+/// Returns the checkpoint with one array missing or altered in one of five ways.
 fn damaged(checkpoint: &Checkpoint, index: usize, how: usize) -> Checkpoint {
     let mut checkpoint = checkpoint.clone();
     let array = &mut checkpoint.arrays[index];
@@ -254,7 +256,7 @@ fn damaged(checkpoint: &Checkpoint, index: usize, how: usize) -> Checkpoint {
     };
     match how {
         0 => drop(checkpoint.arrays.remove(index)),
-        1 => longer(array), // not what the shape says
+        1 => longer(array), // more values than the shape says
         2 => {
             longer(array);
             array.shape = vec![array.values.len()];
@@ -271,7 +273,7 @@ fn damaged(checkpoint: &Checkpoint, index: usize, how: usize) -> Checkpoint {
     checkpoint
 }
 
-/// Every array is asked for and believed in no respect: a wrong one is named, and the simulation stays.
+/// Every array is required and checked: the error names a wrong one, and the simulation stays as it was.
 #[test]
 fn damaged_arrays_are_named_and_nothing_changes() {
     let scene = eventful::<2>(32);
@@ -296,12 +298,12 @@ fn damaged_arrays_are_named_and_nothing_changes() {
     });
     assert_eq!(other.resume(more).expect_err("too much").array, "more");
     assert!(other.checkpoint() == before);
-    other.resume(good).expect("it is whole");
+    other.resume(good).expect("a sound checkpoint");
 }
 
-/// Values that no run leaves.
+/// Values that no run produces are refused.
 #[test]
-fn values_out_of_place_are_refused() {
+fn impossible_values_are_refused() {
     let scene = brawl::<3>(16);
     let mut simulation = fresh::<f64, 3>(&scene);
     let good = simulation.checkpoint();
@@ -324,7 +326,7 @@ fn values_out_of_place_are_refused() {
     refused("materials.2.mass", &set(0, -1.0));
     refused("drift", &set(0, f64::NAN));
     refused("drift", &set(0, 1e9));
-    refused("step", &set(8, 0.3)); // no power of two
+    refused("step", &set(8, 0.3)); // not a power of two
     refused("step", &set(6, -1.0));
     refused("counts", &|values| {
         *values = Values::U64(vec![0, 99, 0, 0, 0])
@@ -368,10 +370,10 @@ fn values_out_of_place_are_refused() {
     );
 }
 
-/// Found by changing arrays at random: a block far outside of the walls, whose rows the first substep put back
-/// inside, beyond their tile.
+/// Found by changing arrays at random: the first substep moved particles of a block far outside the walls back inside,
+/// beyond their tile.
 #[test]
-fn rows_outside_of_the_walls_are_refused() {
+fn particles_outside_the_walls_are_refused() {
     let mut simulation = fresh::<f32, 2>(&brawl::<2>(32));
     let mut bad = simulation.checkpoint();
     let name = "materials.1.runs.block";
@@ -380,16 +382,18 @@ fn rows_outside_of_the_walls_are_refused() {
         Values::I32(blocks) => blocks[0] = -129,
         other => panic!("{other:?}"),
     }
-    let error = simulation.resume(bad).expect_err("nothing is out there");
+    let error = simulation
+        .resume(bad)
+        .expect_err("no particle can be there");
     assert!(
         error.array == name && error.what.contains("walls"),
         "{error}"
     );
 }
 
-/// A drift that is too small would let rows leave their tile before they are sorted.
+/// A drift that is too small would let particles leave their tile before they are sorted.
 #[test]
-fn rows_beyond_their_drift_are_refused() {
+fn particles_beyond_their_drift_are_refused() {
     let scene = brawl::<2>(32);
     let mut simulation = fresh::<f64, 2>(&scene);
     frames(&mut simulation, 1, 1..=2);
@@ -398,6 +402,6 @@ fn rows_beyond_their_drift_are_refused() {
     let drift = &mut drift.expect("it is there").values;
     assert_ne!(*drift, Values::F64(vec![0.0]));
     *drift = Values::F64(vec![0.0]);
-    let error = simulation.resume(bad).expect_err("rows have moved");
+    let error = simulation.resume(bad).expect_err("particles have moved");
     assert!(error.array.contains("position"), "{error}");
 }

@@ -1,7 +1,7 @@
-//! Colliders: a surface between nodes is where it is drawn, takes what the material loses, lets go of
-//! what leaves, and is not passed.
+//! Colliders: their surface lies where it is drawn even between nodes, their impulse is the momentum that the material
+//! loses, material can leave a `separate` surface freely, and no particle passes through.
 
-use crate::fixtures::{self, CONTACTS, ball, brawl, crowd, one_of_each};
+use crate::fixtures::{self, CONTACTS, ball, brawl, colliders_of_all_kinds, one_of_each};
 
 use crate::walled::{SEPARATE, SLIP, both, field};
 use lahar::material::{Corotated, Fluid, lame};
@@ -25,8 +25,8 @@ fn fluid(sound_speed: f64) -> Material {
     }
 }
 
-/// A tank 1 m wide whose floor is a half-space through (.5, height) with slope `angle`, filled to
-/// .5 m above, at rest under its pressure; and its mass.
+/// A tank 1 m wide whose floor is a half-space through (0.5, height) with the slope `angle` \[rad\], filled to 0.5 m above
+/// that point and at rest under its pressure.
 fn tank(dx: f64, height: f64, angle: f64, floor: Contact) -> (Setup<2>, ParticleBatch<2>) {
     let sound_speed = 30.0;
     let normal = [-angle.sin(), angle.cos()];
@@ -67,13 +67,15 @@ fn tank(dx: f64, height: f64, angle: f64, floor: Contact) -> (Setup<2>, Particle
     (setup, batch)
 }
 
-/// What a tank at rest shows after some seconds: force on the floor over the weight, mean height of the
-/// particles over what it was, how far the lowest is from the floor in cells, and the largest speed over
-/// √(gH).
+/// Readings of a tank at rest after 1.5 s.
 struct Rest {
+    /// Force on the floor over the weight.
     force: [f64; 2],
+    /// Mean height of the particles over the height at the start.
     height: f64,
+    /// Distance of the lowest particle from the floor \[cells\].
     gap: f64,
+    /// Largest speed over √(gH).
     speed: f64,
 }
 
@@ -105,8 +107,7 @@ fn rest(dx: f64, height: f64, angle: f64, floor: Contact) -> Rest {
     }
 }
 
-/// Wherever a level floor lies between nodes, water rests on it as on a wall on its plane: .0, .3, .5
-/// and .8 of a cell above one.
+/// Water rests on a level floor between nodes as on a wall on its plane: 0, 0.3, 0.5 and 0.8 of a cell above a node.
 #[test]
 fn a_floor_between_nodes_carries_a_tank() {
     for height in [0.25, 0.265, 0.275, 0.29] {
@@ -126,8 +127,8 @@ fn a_floor_between_nodes_carries_a_tank() {
     }
 }
 
-/// On a slope the water's rows do not follow the floor: what is left is of the size of the steps that
-/// particles of one row make.
+/// On a slope the rows of particles do not follow the floor, so an error remains that is as large as the steps between
+/// neighbors in a row.
 #[test]
 fn a_sloping_floor_carries_a_tank() {
     for (angle, height, force) in [(0.2, 2e-3, 5e-3), (0.5, 1e-2, 2e-2)] {
@@ -146,7 +147,7 @@ fn a_sloping_floor_carries_a_tank() {
             );
             assert!(found.gap > -1e-4, "{at}: {} cells", found.gap);
             if contact != Contact::Sticky {
-                // Pressure on an inclined floor: its horizontal part over the vertical one is the slope.
+                // Pressure is normal to the floor: its horizontal part over its vertical part is the slope.
                 let slope = -found.force[0] / found.force[1];
                 assert!((slope / angle.tan() - 1.0).abs() < 0.05, "{at}: {slope}");
             }
@@ -154,14 +155,14 @@ fn a_sloping_floor_carries_a_tank() {
     }
 }
 
-/// By how much the momentum of the brawl differs from gravity's impulse less what walls and colliders
-/// took, relative to what they took.
+/// Returns by how much the change of the brawl's momentum differs from the impulse of gravity less the impulses of walls
+/// and colliders, relative to the latter.
 fn imbalance<const D: usize>(cells: usize, contact: Contact, transfer: Transfer) -> f64
 where
     f64: Instance<D>,
 {
     let (mut setup, batches) = brawl::<D>(cells);
-    setup.colliders = crowd(setup.dx * cells as f64, contact);
+    setup.colliders = colliders_of_all_kinds(setup.dx * cells as f64, contact);
     setup.transfer = transfer;
     let dt = 4e-4;
     setup.time_step = TimeStep::Fixed(dt);
@@ -194,7 +195,7 @@ where
 }
 
 #[test]
-fn what_colliders_take_is_what_the_material_loses() {
+fn impulses_of_colliders_are_the_momentum_that_the_material_loses() {
     for contact in CONTACTS {
         for transfer in [Transfer::Flip { blend: 0.9 }, Transfer::Apic] {
             let error = imbalance::<2>(40, contact, transfer);
@@ -205,11 +206,11 @@ fn what_colliders_take_is_what_the_material_loses() {
     }
 }
 
-/// How deep the deepest particle is in any collider, in cells, at any time of the brawl.
+/// Returns how deep a particle ever is inside a collider during the brawl \[cells\].
 fn deepest<T: Instance<D>, const D: usize>(cells: usize, contact: Contact) -> f64 {
     let (mut setup, batches) = brawl::<D>(cells);
     let (dx, size) = (setup.dx, setup.dx * cells as f64);
-    setup.colliders = crowd(size, contact);
+    setup.colliders = colliders_of_all_kinds(size, contact);
     let colliders = setup.colliders.clone();
     let mut simulation = Simulation::<T, D>::new(setup, &batches).unwrap();
     let mut deepest = 0.0_f64;
@@ -239,8 +240,8 @@ fn nothing_is_inside_a_collider() {
     }
 }
 
-/// A block of jelly that lies on a half-space of any slope and moves off: the largest change of a
-/// particle's velocity \[m/s\].
+/// Lets a block of jelly move off a half-space of any slope and returns the largest change of a particle's velocity
+/// \[m/s\].
 fn leave<const D: usize>(normal: [f64; D], friction: f64, transfer: Transfer) -> f64
 where
     f64: Instance<D>,
@@ -311,7 +312,7 @@ fn a_body_that_leaves_a_separate_collider_keeps_its_velocity() {
     }
 }
 
-/// How far a block that was let go on a slope has slid down it after a half and after one second \[m\].
+/// Returns how far a block has slid down a slope half a second and one second after its release \[m\].
 fn slide(angle: f64, friction: f64) -> [f64; 2] {
     let dx = 0.1;
     let (lambda, mu) = lame(5e6, 0.3);
@@ -361,9 +362,9 @@ fn slide(angle: f64, friction: f64) -> [f64; 2] {
     })
 }
 
-/// The block of S3 of the validation cases. It starts without stress, so that for its first
-/// milliseconds it is not pressed on the slope and friction is not all there: what it gains by that it
-/// keeps, and its acceleration is told by three places.
+/// The block of validation case S3. It starts without stress, so for its first milliseconds it is not pressed onto the
+/// slope and friction is too small. The acceleration is therefore taken from three places, which cancels the speed that
+/// the block gains in that time.
 #[test]
 fn a_block_slides_down_a_slope_by_coulomb_s_law() {
     let angle = 24.0_f64.to_radians();
@@ -373,23 +374,23 @@ fn a_block_slides_down_a_slope_by_coulomb_s_law() {
         let part = (whole - 2.0 * half) / (0.25 * acceleration);
         assert!(
             (part - 1.0).abs() < 2e-3,
-            "{friction}: {part} of the acceleration"
+            "{friction}: {part} of the exact acceleration"
         );
     }
 }
 
 #[test]
-fn a_block_stays_on_a_slope_that_holds_it() {
+fn a_block_stays_on_a_slope_within_the_friction_angle() {
     let [half, whole] = slide(10.0_f64.to_radians(), 15.0_f64.to_radians().tan());
-    assert!(half.abs() < 1e-3, "it sags by {half} m");
+    assert!(half.abs() < 1e-3, "the block sags by {half} m");
     assert!(
         (whole - half).abs() < 1e-5,
-        "and moves on by {} m",
+        "the block moves on by {} m",
         whole - half
     );
 }
 
-/// A piston through a column of water takes it along, and no particle stays behind.
+/// A fast piston takes a ball of dust along, and no particle stays behind.
 #[test]
 fn a_fast_piston_passes_no_particle() {
     let mut random = fixtures::Random(3);
@@ -421,7 +422,8 @@ fn a_fast_piston_passes_no_particle() {
     }
 }
 
-/// Fluid that runs along the floor against an obstacle: where it is after .25 s, and what the obstacle has taken.
+/// Runs fluid along the floor against an obstacle for 0.25 s. Returns the particles' positions and the impulse on the
+/// obstacle.
 fn stream<const D: usize>(solid: Solid<D>, motion: Motion<D>) -> (Vec<[f64; D]>, [f64; 3])
 where
     f32: Instance<D>,
@@ -456,12 +458,16 @@ where
     batch.velocity = vec![core::array::from_fn(|i| if i == 0 { 2.0 } else { 0.0 })];
     let mut simulation = Simulation::<f32, D>::new(setup, &[batch]).unwrap();
     simulation.advance_to(0.25).unwrap();
-    let taken = simulation.boundary_impulses().pop().unwrap();
-    assert!(taken.impulse[0] > 0.0, "the stream has come to it");
-    (field::<D>(&simulation, Field::Position), taken.impulse)
+    let obstacle = simulation.boundary_impulses().pop().unwrap();
+    assert!(
+        obstacle.impulse[0] > 0.0,
+        "the stream has reached the obstacle"
+    );
+    (field::<D>(&simulation, Field::Position), obstacle.impulse)
 }
 
-/// What stands on the floor acts as if it went on below: to the bit as the same that begins 5 cells lower.
+/// An obstacle on the floor acts as if it continued below: the bits are those of the same obstacle extended downward by
+/// 5 cells.
 #[test]
 fn an_obstacle_that_stands_on_the_floor_has_no_face_there() {
     let below = -5.0 / 32.0;
@@ -505,7 +511,7 @@ fn an_obstacle_that_stands_on_the_floor_has_no_face_there() {
         stream(column(0.0), Motion::Still),
         stream(column(below), Motion::Still)
     );
-    // A gate that is lifted has a lower face.
+    // A gate that is lifted does have a lower face.
     let (_, standing) = stream(block(0.0), Motion::Still);
     let (_, lifted) = stream(block(0.0), steady([0.0, 1.0]));
     assert!(lifted[0] < 0.9 * standing[0], "{lifted:?} {standing:?}");

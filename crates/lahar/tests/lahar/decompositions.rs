@@ -1,37 +1,39 @@
-//! A decomposition is right when its product is the matrix and its factors are what they claim to
-//! be, for whatever matrix a simulation can come up with. So: a million matrices of each kind, in
-//! 2D and 3D, f32 and f64, one by one and in lanes (the machine's widest and the baseline), every
-//! other batch with denormal numbers flushed; and the worst error of each claim against the bound
-//! that the documentation of `svd` and `polar` states.
+//! The bounds that the documentation of `svd` and `polar` states, measured.
+//!
+//! A decomposition is right if its product is the matrix and its factors have the properties that they claim, for every
+//! matrix that can come up in a simulation. The test takes a million matrices of each kind in 2D and 3D, f32 and f64, one
+//! by one and in lanes (the widest of the machine and the baseline), and flushes denormal numbers in every other batch. The
+//! worst error of each claim is compared with its bound.
 //!
 //! ```text
 //!   sample (f64) → round to T → svd, polar in T (scalar | lanes) → errors, in f64, over ε of T
 //! ```
 
+use crate::fixtures::Random;
 use fearless_simd::{Level, Simd, dispatch};
 use lahar::math::{Lanes, Mask, Matrix, Polar, Real, Svd, Vector, polar, svd};
 use std::hint::black_box;
 
-/// Matrices of each kind, over all dimensions and precisions.
+/// The number of matrices of each kind, over all dimensions and precisions.
 const SAMPLES: usize = 1 << 22;
-/// Matrices worked at a time: a whole number of lane values of every type.
+/// The number of matrices per batch: a multiple of the lanes of every type.
 const BATCH: usize = 16;
 
-/// One number of each of a batch's matrices, at each place of a matrix.
+/// The matrices of a batch: each entry holds that entry of all of them.
 type Batch<T, const D: usize> = Matrix<[T; BATCH], D>;
 
-/// The kinds of matrices.
+/// A kind of random matrices.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
     /// Independent normal entries.
     Gaussian,
-    /// Prescribed singular values, in ratios up to 10^±digits, in any order.
+    /// Prescribed singular values in any order, with ratios up to 10^±digits.
     Ratios,
-    /// The same with a negative determinant.
+    /// As `Ratios`, with a negative determinant.
     Reflected,
-    /// Singular values equal, or apart by a relative 1 to 1e-17.
+    /// Singular values that are equal or differ by a factor of 1 + 10⁻¹⁷ to 1.5.
     Repeated,
-    /// Some or all singular values zero; matrices of small whole numbers, many of them singular.
+    /// Some or all singular values are zero; or entries are small whole numbers, so that many are singular.
     Singular,
     /// I + 10⁻¹ to 10⁻¹⁷ times a Gaussian matrix.
     NearIdentity,
@@ -41,15 +43,15 @@ enum Kind {
     Diagonal,
     /// I plus one entry off the diagonal, small to huge.
     Shear,
-    /// `Gaussian` and `Ratios`, with a largest entry or singular value of any magnitude.
+    /// `Gaussian` and `Ratios`, scaled to any magnitude.
     Scaled,
 }
 
-/// What the kinds need to know of a precision.
+/// The ranges of random numbers for a precision.
 trait Number: Lanes {
-    /// Singular values reach from 1 down to 10 to the minus this.
+    /// Singular values range from 1 down to 10 to the power of minus this number.
     const DIGITS: f64;
-    /// Scales reach from 10 to the first to 10 to the second of these.
+    /// Scales range from 10 to the power of the first number to 10 to the power of the second.
     const DECADES: (f64, f64);
 }
 impl Number for f32 {
@@ -61,9 +63,9 @@ impl Number for f64 {
     const DECADES: (f64, f64) = (-290.0, 306.0);
 }
 
-/// The claims, what they may reach in units of ε (0: must hold exactly), and their names.
+/// The largest allowed error of each claim in units of ε (0: the claim must hold exactly), and its name.
 ///
-/// Seen over 16 million matrices of each kind: 7 for the product, 9 for the singular values (the
+/// Measured over 16 million matrices of each kind: 7 for the product, 9 for the singular values (the
 /// rounding of the sample, in f64, included), 9 and 7 for U and V, 12 for R; by climbing the
 /// errors of f32 in 3D from 300 random starts: 7, 10 and 8 for U and V, 13 for R.
 const CLAIMS: [(f64, &str); 12] = [
@@ -81,7 +83,7 @@ const CLAIMS: [(f64, &str); 12] = [
     (0.0, "sign of the last singular value, symmetry of S"),
 ];
 
-/// What came out for a batch.
+/// The decompositions of a batch.
 struct Outcome<T, const D: usize> {
     u: Batch<T, D>,
     sigma: Vector<[T; BATCH], D>,
@@ -155,7 +157,7 @@ fn load<T: Lanes, S: Simd, const D: usize>(
     Matrix::from_fn(|i, j| T::load(simd, &m[(i, j)][k..]))
 }
 
-/// To f64, times a power of two.
+/// Converts to f64 and multiplies by a power of two per matrix.
 fn wide<T: Number, const D: usize>(m: &Batch<T, D>, scale: &[f64; BATCH]) -> Batch<f64, D> {
     Matrix(m.0.map(|column| wide_vector(&column, scale)))
 }
@@ -167,7 +169,7 @@ fn wide_vector<T: Number, const D: usize>(
     Vector(v.0.map(|x| std::array::from_fn(|k| x[k].to_f64() * scale[k])))
 }
 
-/// The error of each claim in units of `epsilon`, for eight matrices.
+/// Returns the error of each claim in units of `epsilon`, for one register of matrices.
 #[inline(always)]
 fn errors<S: Simd, const D: usize>(
     simd: S,
@@ -194,7 +196,7 @@ fn errors<S: Simd, const D: usize>(
     let unit = one.lit(epsilon);
     let identity = Matrix::<_, D>::identity(one);
     let size = f.squared_norm().sqrt();
-    // The zero matrix has to come out without any error.
+    // The zero matrix must be decomposed without any error.
     let tiny = one.lit(1e-300);
     let relative =
         |e: Matrix<<f64 as Lanes>::Of<S>, D>| e.squared_norm().sqrt() / (size.max(tiny) * unit);
@@ -214,14 +216,14 @@ fn errors<S: Simd, const D: usize>(
             order = order.max(sigma[i + 1].abs() - sigma[i]);
         }
     }
-    // Not a number in the samples whose singular values are not known beforehand.
+    // Samples whose singular values are unknown have NaN here.
     let is_known = known[0].is_finite();
     let sigma_error = sigma_error / (known[0].abs().max(tiny) * unit);
     let sigma_error = <f64 as Lanes>::Of::<S>::select(is_known, sigma_error, zero);
 
     let mut smallest = u.determinant().min(v.determinant());
     smallest = smallest.min(r.determinant());
-    // Where the last singular value stands out of the errors, its sign is that of det F.
+    // If the last singular value is larger than the errors, its sign is that of det F.
     let mut others = size;
     for i in 0..D - 1 {
         others *= sigma[i];
@@ -264,7 +266,7 @@ fn judge<const D: usize>(
     dispatch!(Level::new(), simd => worst_of(simd, f, exact, outcome, epsilon, worst));
 }
 
-/// The worst error of each claim in a batch; infinite where something is not a number.
+/// Raises `worst` to the errors of a batch; to infinity if an error is not finite.
 #[inline(always)]
 fn worst_of<S: Simd, const D: usize>(
     simd: S,
@@ -287,29 +289,16 @@ fn worst_of<S: Simd, const D: usize>(
     }
 }
 
-/// Deterministic random numbers: splitmix64 (Steele, Lea & Flood 2014).
-struct Random(u64);
-
+/// Random numbers and matrices for the samples.
 impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-    /// Evenly from `low` to `high`.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.bits() >> 11) as f64 / (1u64 << 53) as f64)
-    }
-    /// 0 to `n` − 1.
+    /// A number from 0 to `n` − 1.
     fn below(&mut self, n: usize) -> usize {
         (self.bits() >> 33) as usize % n
     }
     fn sign(&mut self) -> f64 {
         if self.bits() >> 63 == 0 { 1.0 } else { -1.0 }
     }
-    /// Ten to a power evenly from `low` to `high`.
+    /// Ten to the power of a number in `low .. high`.
     fn decades(&mut self, low: f64, high: f64) -> f64 {
         10f64.powf(self.between(low, high))
     }
@@ -320,7 +309,7 @@ impl Random {
     fn normal_matrix<const D: usize>(&mut self) -> Matrix<f64, D> {
         Matrix::from_fn(|_, _| self.normal())
     }
-    fn rotation<const D: usize>(&mut self) -> Matrix<f64, D> {
+    fn rotation_by_quaternion<const D: usize>(&mut self) -> Matrix<f64, D> {
         let mut q: [f64; 4] = std::array::from_fn(|_| self.between(-1.0, 1.0));
         if D == 2 {
             (q[1], q[2]) = (0.0, 0.0);
@@ -346,7 +335,7 @@ impl Random {
         ];
         Matrix::from_fn(|i, j| rows[i][j])
     }
-    /// The order 0, 1, .., D − 1 shuffled.
+    /// A permutation of 0, 1, .., D − 1.
     fn order<const D: usize>(&mut self) -> [usize; D] {
         let mut order = std::array::from_fn(|i| i);
         for i in (1..D).rev() {
@@ -356,8 +345,8 @@ impl Random {
     }
 }
 
-/// A matrix of a kind, and its singular values where they are known: in descending order, the
-/// sign of the determinant on the last.
+/// A random matrix and, if they are known, its singular values in descending order; the last one has the sign of the
+/// determinant.
 struct Sample<const D: usize> {
     matrix: Matrix<f64, D>,
     sigma: Option<[f64; D]>,
@@ -368,7 +357,7 @@ impl<const D: usize> Sample<D> {
         let sigma = None;
         Self { matrix, sigma }
     }
-    /// left diag(values) rightᵀ, of rotations or permutations without a reflection.
+    /// Returns left diag(values) rightᵀ; `left` and `right` must be rotations.
     fn of(left: Matrix<f64, D>, values: [f64; D], right: Matrix<f64, D>) -> Self {
         let negative = values.iter().product::<f64>() < 0.0;
         let mut sigma = values.map(f64::abs);
@@ -391,7 +380,11 @@ impl<const D: usize> Sample<D> {
                 if matches!(kind, Kind::Reflected) {
                     values[random.below(D)] *= -1.0;
                 }
-                Self::of(random.rotation(), values, random.rotation())
+                Self::of(
+                    random.rotation_by_quaternion(),
+                    values,
+                    random.rotation_by_quaternion(),
+                )
             }
             Kind::Repeated => {
                 let value = random.decades(-1.0, 1.0);
@@ -406,7 +399,11 @@ impl<const D: usize> Sample<D> {
                 if random.below(4) == 0 {
                     values[random.below(D)] = random.decades(-T::DIGITS, 0.0);
                 }
-                Self::of(random.rotation(), values, random.rotation())
+                Self::of(
+                    random.rotation_by_quaternion(),
+                    values,
+                    random.rotation_by_quaternion(),
+                )
             }
             Kind::Singular => match random.below(4) {
                 0 => Self::unknown(Matrix::from_fn(|_, _| random.below(5) as f64 - 2.0)),
@@ -416,12 +413,16 @@ impl<const D: usize> Sample<D> {
                     values[random.below(D)] = random.between(0.0, 1.0);
                     values[random.below(D)] = random.between(-1.0, 1.0);
                     values[random.below(D)] = 0.0;
-                    Self::of(random.rotation(), values, random.rotation())
+                    Self::of(
+                        random.rotation_by_quaternion(),
+                        values,
+                        random.rotation_by_quaternion(),
+                    )
                 }
-                // A column or a row of a random matrix gone.
+                // A random matrix with a column or a row of zeros.
                 _ => {
-                    let (gone, mut matrix) = (random.below(D), random.normal_matrix());
-                    matrix.0[gone] = Vector([0.0; D]);
+                    let (zeroed, mut matrix) = (random.below(D), random.normal_matrix());
+                    matrix.0[zeroed] = Vector([0.0; D]);
                     let sideways = random.below(2) == 0;
                     Self::unknown(if sideways { matrix.transpose() } else { matrix })
                 }
@@ -433,7 +434,11 @@ impl<const D: usize> Sample<D> {
                 let mut values = [random.decades(-2.0, 2.0); D];
                 values[random.below(D)] *= random.sign();
                 if random.below(2) == 0 {
-                    Self::of(random.rotation(), values, random.rotation())
+                    Self::of(
+                        random.rotation_by_quaternion(),
+                        values,
+                        random.rotation_by_quaternion(),
+                    )
                 } else {
                     let order = random.order::<D>();
                     Self::unknown(Matrix::from_fn(|i, j| {
@@ -476,8 +481,8 @@ impl<const D: usize> Sample<D> {
     }
 }
 
-/// The power of two that brings `x` to between 1 and 2; 1 for zero.
-fn normaliser(x: f64) -> f64 {
+/// Returns the power of two that scales `x` to between 1 and 2; 1 for zero.
+fn normalizer(x: f64) -> f64 {
     if x == 0.0 {
         return 1.0;
     }
@@ -485,7 +490,7 @@ fn normaliser(x: f64) -> f64 {
     2f64.powi(-exponent)
 }
 
-/// The worst error of each claim over `SAMPLES` / 4 matrices of a kind.
+/// Returns the worst error of each claim over `SAMPLES` / 4 matrices of a kind.
 fn worst<T: Number, const D: usize>(kind: Kind) -> [f64; CLAIMS.len()] {
     let epsilon = T::EPSILON.to_f64();
     let mut random = Random(1);
@@ -505,7 +510,7 @@ fn worst<T: Number, const D: usize>(kind: Kind) -> [f64; CLAIMS.len()] {
                     largest = largest.max(x.to_f64().abs());
                 }
             }
-            scale[k] = normaliser(largest);
+            scale[k] = normalizer(largest);
             for i in 0..D {
                 exact[i][k] = sample.sigma.map_or(f64::NAN, |sigma| sigma[i] * scale[k]);
             }
@@ -598,7 +603,7 @@ fn zero_is_the_identity_times_zero() {
 }
 
 #[test]
-fn what_is_not_finite_stays_so() {
+fn non_finite_matrices_have_non_finite_factors() {
     fn case<T: Number, const D: usize>() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             for at in 0..D * D {
@@ -621,10 +626,10 @@ mod denormals {
     /// Flush results to zero, and read denormal operands as zero.
     const FLUSH: u32 = 1 << 15 | 1 << 6;
 
-    /// Does the work, with denormal numbers flushed if asked.
+    /// Runs `work`, with denormal numbers flushed to zero if `flush` is set.
     pub(crate) fn flushed(flush: bool, work: impl FnOnce()) {
         let mut before = 0u32;
-        // SAFETY: stores four bytes to where `before` is.
+        // SAFETY: stores four bytes to `before`, which is four bytes long.
         unsafe { core::arch::asm!("stmxcsr [{}]", in(reg) &raw mut before, options(nostack)) };
         set(if flush { before | FLUSH } else { before });
         work();
@@ -632,15 +637,15 @@ mod denormals {
     }
 
     fn set(control: u32) {
-        // SAFETY: reads four bytes; no flag but those of `FLUSH` changes, exceptions stay masked
-        // and the rounding as it was.
+        // SAFETY: reads four bytes; only the flags of `FLUSH` change, so exceptions stay masked and the rounding
+        // mode stays.
         unsafe { core::arch::asm!("ldmxcsr [{}]", in(reg) &raw const control, options(nostack)) };
     }
 }
 
 #[cfg(not(target_arch = "x86_64"))]
 mod denormals {
-    /// Does the work: no flag to set here.
+    /// Runs `work`; this machine has no such flag to set.
     pub(crate) fn flushed(_: bool, work: impl FnOnce()) {
         work();
     }

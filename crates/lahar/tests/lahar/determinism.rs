@@ -1,11 +1,11 @@
-//! Same scene, same bits: over threads, over shifts by whole blocks, over looking at it.
+//! The same scene gives the same bits: on any number of threads, shifted by whole blocks, and whether or not it is read.
 
-use crate::fixtures::{ALL, bits, brawl, brawl_with_all_options, crowd, run_on};
+use crate::fixtures::{ALL, bits, brawl, brawl_with_all_options, colliders_of_all_kinds, run_on};
 use lahar::Instance;
 use lahar::particles::Field;
 use lahar::{Collider, Contact, Isa, Motion, ParticleBatch, Setup, Simulate, Simulation, Transfer};
 
-/// Bits on 1, 2, 3 and 8 threads, over enough sorts that particles change blocks and order.
+/// Compares bits on 1, 2, 3 and 8 threads, over so many sorts that particles change blocks and order.
 fn same_bits_on_any_number_of_threads<T: Instance<D>, const D: usize>(
     (mut setup, batches): (Setup<D>, Vec<ParticleBatch<D>>),
     time: f64,
@@ -44,7 +44,7 @@ fn same_bits_on_any_number_of_threads<T: Instance<D>, const D: usize>(
         assert_eq!(
             one.boundary_impulses(),
             other.boundary_impulses(),
-            "{threads} threads differ from one in what walls took"
+            "{threads} threads differ from one in the impulses of walls"
         );
     }
 }
@@ -68,10 +68,10 @@ fn threads_do_not_change_bits_3d() {
 fn threads_do_not_change_bits_among_colliders() {
     let (mut setup, batches) = brawl(64);
     let contact = Contact::Separate { friction: 0.2 };
-    setup.colliders = crowd(64.0 * setup.dx, contact);
+    setup.colliders = colliders_of_all_kinds(64.0 * setup.dx, contact);
     same_bits_on_any_number_of_threads::<f32, 2>((setup, batches), 0.4, Transfer::Apic);
     let (mut setup, batches) = brawl(32);
-    setup.colliders = crowd(32.0 * setup.dx, contact);
+    setup.colliders = colliders_of_all_kinds(32.0 * setup.dx, contact);
     same_bits_on_any_number_of_threads::<f32, 3>((setup, batches), 0.3, Transfer::Apic);
 }
 
@@ -80,7 +80,7 @@ fn threads_do_not_change_bits_with_all_options() {
     same_bits_on_any_number_of_threads::<f32, 2>(brawl_with_all_options(64), 0.4, Transfer::Apic);
 }
 
-/// Moves a collider as the test below moves particles.
+/// Moves a collider as [`same_bits_elsewhere`] moves particles.
 fn move_by<const D: usize>(collider: &mut Collider<D>, by: f64) {
     let shift = |x: &mut [f64; D]| {
         x[0] += by;
@@ -104,18 +104,18 @@ fn move_by<const D: usize>(collider: &mut Collider<D>, by: f64) {
     }
 }
 
-/// The same scene elsewhere: everything but positions keeps its bits.
+/// Checks that everything but positions keeps its bits when the scene is shifted by `shift_cells` cells.
 fn same_bits_elsewhere<T: Instance<D>, const D: usize>(shift_cells: f64) {
     let (mut setup, batches) = brawl::<D>(32);
     setup.domain = None;
     setup.gravity = [0.0; D];
-    setup.colliders = crowd(32.0 * setup.dx, Contact::Separate { friction: 0.2 });
+    setup.colliders = colliders_of_all_kinds(32.0 * setup.dx, Contact::Separate { friction: 0.2 });
     let moved: Vec<_> = batches
         .iter()
         .cloned()
         .map(|mut batch| {
             for position in &mut batch.position {
-                // Rounded to a grid that both places can say exactly.
+                // Rounded to numbers that are exact at both places.
                 position
                     .iter_mut()
                     .for_each(|x| *x = (*x * 1_048_576.0).round() / 1_048_576.0);
@@ -168,16 +168,16 @@ fn a_shift_by_whole_blocks_does_not_change_bits() {
 }
 
 #[test]
-fn looking_does_not_change_bits() {
+fn reading_does_not_change_bits() {
     let (setup, batches) = brawl::<2>(48);
-    let run = |look: bool| {
+    let run = |read: bool| {
         let mut simulation =
             Simulation::<f32, 2>::new(setup.clone(), &batches).expect("a good setup");
         for frame in 1..=30 {
             simulation
                 .advance_to(f64::from(frame) / 100.0)
                 .expect("it runs");
-            if look {
+            if read {
                 let _ = simulation.diagnostics();
                 let _ = simulation.snapshot(ALL);
             }

@@ -123,30 +123,6 @@ pub(crate) fn fixed_dt<const D: usize>(setup: &Setup<D>) -> f64 {
     }
 }
 
-/// Numbers that look random and are the same everywhere (SplitMix64).
-pub(crate) struct Numbers(pub(crate) u64);
-
-impl Numbers {
-    /// The next one, in −1 .. 1.
-    pub(crate) fn signed(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    /// `D` of them.
-    pub(crate) fn vector<const D: usize>(&mut self) -> [f64; D] {
-        core::array::from_fn(|_| self.signed())
-    }
-
-    /// `D` rows of `D`, each times `scale`.
-    pub(crate) fn matrix<const D: usize>(&mut self, scale: f64) -> [[f64; D]; D] {
-        core::array::from_fn(|_| self.vector().map(|x| x * scale))
-    }
-}
-
 /// `f` as the vector that formulas use.
 pub(crate) fn times<const D: usize>(matrix: [[f64; D]; D], vector: [f64; D]) -> [f64; D] {
     matrix.map(|row| Vector(row).dot(Vector(vector)))

@@ -1,4 +1,4 @@
-//! Scenes that several tests run.
+//! Scenes and helpers that several tests share.
 
 use lahar::material::{
     Corotated, Dust, Eos, Fluid, HardeningFrom, NeoHookean, Snow, ViscousStress, VolumeCorrection,
@@ -10,23 +10,41 @@ use lahar::{
     Setup, Sides, Simulate, Simulation, Solid, TimeStep, WallStyle,
 };
 
-/// A small generator of even numbers, the same everywhere (splitmix64).
+/// A generator of pseudo-random numbers, the same on every machine: SplitMix64 (Steele, Lea & Flood 2014).
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    pub(crate) fn unit(&mut self) -> f64 {
+    /// The next 64 bits.
+    pub(crate) fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        z ^ (z >> 31)
     }
+
+    /// A number in `low .. high`.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
+        low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
+    }
+
+    /// A number in −1 .. 1.
+    pub(crate) fn signed(&mut self) -> f64 {
+        self.between(-1.0, 1.0)
+    }
+
+    /// A vector of numbers in −1 .. 1.
+    pub(crate) fn vector<const D: usize>(&mut self) -> [f64; D] {
+        core::array::from_fn(|_| self.signed())
+    }
+
+    /// `D` rows of `D` numbers in −`size` .. `size`.
+    pub(crate) fn rows<const D: usize>(&mut self, size: f64) -> [[f64; D]; D] {
+        core::array::from_fn(|_| self.vector().map(|x| x * size))
     }
 }
 
-/// One of each model, soft enough that waves and particles are of like speed.
+/// One material of each model, so soft that waves and particles have similar speeds.
 pub(crate) fn one_of_each() -> Vec<Material> {
     let (lambda, mu) = lame(2e3, 0.3);
     let material = |name: &str, density, model| Material {
@@ -65,10 +83,10 @@ pub(crate) fn one_of_each() -> Vec<Material> {
     ]
 }
 
-/// A ball's worth of jittered particles of material `material`.
+/// A ball of jittered particles of material `material`.
 pub(crate) fn ball<const D: usize>(
     material: usize,
-    centre: [f64; D],
+    center: [f64; D],
     radius: f64,
     dx: f64,
     velocity: [f64; D],
@@ -82,7 +100,7 @@ pub(crate) fn ball<const D: usize>(
         let offset: [f64; D] = core::array::from_fn(|a| f64::from(index[a]) * spacing);
         if offset.iter().map(|x| x * x).sum::<f64>() < radius * radius {
             position.push(core::array::from_fn(|a| {
-                centre[a] + offset[a] + random.between(-0.2, 0.2) * spacing
+                center[a] + offset[a] + random.between(-0.2, 0.2) * spacing
             }));
         }
         let Some(axis) = (0..D).rev().find(|&a| index[a] < n) else {
@@ -101,7 +119,7 @@ pub(crate) fn ball<const D: usize>(
     }
 }
 
-/// Balls of all materials thrown at each other in a box of `cells` cells with separating walls.
+/// Balls of all materials, thrown at each other in a box of `cells` cells per side with `separate` walls.
 pub(crate) fn brawl<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatch<D>>) {
     let dx = 1.0 / 32.0;
     let size = dx * cells as f64;
@@ -110,13 +128,13 @@ pub(crate) fn brawl<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatc
     let batches = (0..materials.len())
         .map(|k| {
             let angle = k as f64 * 1.3;
-            let mut centre = [0.5 * size; D];
-            centre[0] += 0.27 * size * angle.cos();
-            centre[1] += 0.27 * size * angle.sin();
+            let mut center = [0.5 * size; D];
+            center[0] += 0.27 * size * angle.cos();
+            center[1] += 0.27 * size * angle.sin();
             let mut velocity = [0.3; D];
             velocity[0] = -2.0 * angle.cos();
             velocity[1] = -2.0 * angle.sin();
-            ball(k, centre, 0.13 * size, dx, velocity, &mut random)
+            ball(k, center, 0.13 * size, dx, velocity, &mut random)
         })
         .collect();
     let mut setup = Setup::new(dx, materials);
@@ -138,9 +156,9 @@ pub(crate) fn brawl<const D: usize>(cells: usize) -> (Setup<D>, Vec<ParticleBatc
     (setup, batches)
 }
 
-/// The brawl with what is off by default: water whose J is gathered and whose viscosity is of the
-/// other kind, jelly with measured volumes, snow's other hardening; particles clamped and cushioned,
-/// some of them outside at the start.
+/// The brawl with options that are off by default: water with gathered J and engineering viscous stress, solids with
+/// measured volumes, snow that hardens by the previous strain, and a clamp and a cushion that some particles start
+/// outside of.
 pub(crate) fn brawl_with_all_options<const D: usize>(
     cells: usize,
 ) -> (Setup<D>, Vec<ParticleBatch<D>>) {
@@ -180,9 +198,12 @@ pub(crate) fn brawl_with_all_options<const D: usize>(
     (setup, batches)
 }
 
-/// Several colliders, of every shape and some in each other, moving in all ways, with `contact`.
-pub(crate) fn crowd<const D: usize>(size: f64, contact: Contact) -> Vec<Collider<D>> {
-    // Rounded to what can be said exactly even far away.
+/// Colliders of every shape and motion, some of them overlapping, all with the contact law `contact`.
+pub(crate) fn colliders_of_all_kinds<const D: usize>(
+    size: f64,
+    contact: Contact,
+) -> Vec<Collider<D>> {
+    // Rounded to multiples of 1/1024, which floating-point numbers represent exactly even far from the origin.
     let exact = |x: f64| (size * x * 1024.0).round() / 1024.0;
     let place = |x: f64, y: f64| -> [f64; D] { core::array::from_fn(|i| exact([x, y, 0.5][i])) };
     let along = |i: usize| core::array::from_fn(|j| f64::from(i == j));
@@ -243,7 +264,7 @@ pub(crate) fn crowd<const D: usize>(size: f64, contact: Contact) -> Vec<Collider
     ]
 }
 
-/// Every law, with friction and without.
+/// Every contact law, with friction and without.
 pub(crate) const CONTACTS: [Contact; 4] = [
     Contact::Sticky,
     Contact::Slip { friction: 0.0 },
@@ -251,7 +272,7 @@ pub(crate) const CONTACTS: [Contact; 4] = [
     Contact::Separate { friction: 0.4 },
 ];
 
-/// Everything a particle has.
+/// All fields of a particle.
 pub(crate) const ALL: &[Field] = &[
     Field::Position,
     Field::Velocity,
@@ -265,7 +286,7 @@ pub(crate) const ALL: &[Field] = &[
     Field::Id,
 ];
 
-/// The bits of a snapshot, column after column.
+/// Returns the bits of a snapshot, column after column.
 pub(crate) fn bits(snapshot: &Snapshot) -> Vec<u64> {
     let mut all = vec![snapshot.time.to_bits()];
     for (_, data) in &snapshot.columns {
@@ -278,7 +299,7 @@ pub(crate) fn bits(snapshot: &Snapshot) -> Vec<u64> {
     all
 }
 
-/// Runs to `time` on `threads` threads.
+/// Runs a scene to `time` \[s\] on `threads` threads.
 pub(crate) fn run_on<T: lahar::Instance<D>, const D: usize>(
     threads: usize,
     setup: &Setup<D>,

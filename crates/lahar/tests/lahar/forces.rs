@@ -9,7 +9,7 @@ use lahar::{
 };
 use std::sync::Arc;
 
-/// a = −k (x − X), with X where the particle started plus an offset; or the origin for all.
+/// The acceleration −k (x − X), where X is the particle's starting position plus an offset, or the origin for all.
 #[derive(Debug)]
 struct Spring<const D: usize> {
     k: f64,
@@ -38,7 +38,7 @@ impl<const D: usize> AccelerationField<D> for Spring<D> {
     }
 }
 
-/// a = A cos(ω t) along every axis.
+/// The acceleration A cos(ω t) along every axis.
 #[derive(Debug)]
 struct Shake {
     amplitude: f64,
@@ -53,7 +53,7 @@ impl<const D: usize> AccelerationField<D> for Shake {
 
 const DT: f64 = 2e-3;
 
-/// A grain of dust at `position`, thrown with `velocity`.
+/// Returns a scene with a single grain of dust.
 fn grain<const D: usize>(
     transfer: Transfer,
     forces: Vec<Force<D>>,
@@ -80,7 +80,8 @@ fn grain<const D: usize>(
     (setup, batch)
 }
 
-/// The largest distance between an engine's only particle and `expected(n)` over `steps`.
+/// Returns the largest distance along an axis between an engine's only particle and the course that `expected` gives
+/// substep by substep, over `steps` substeps \[m\].
 fn off_course<E: Engine<D>, const D: usize>(
     (setup, batch): (Setup<D>, ParticleBatch<D>),
     steps: u32,
@@ -101,8 +102,8 @@ fn off_course<E: Engine<D>, const D: usize>(
 
 const TRANSFERS: [Transfer; 3] = [Transfer::Pic, Transfer::Flip { blend: 1.0 }, Transfer::Apic];
 
-/// Fields that are linear in x are summed exactly by the weights: a grain then does what symplectic
-/// Euler does, v += Δt a(x), x += Δt v, in every transfer scheme.
+/// Checks that a single grain in a field linear in x moves as symplectic Euler has it, v += Δt a(x), x += Δt v, in every
+/// transfer scheme: the weights reproduce linear functions exactly.
 fn grains_follow_linear_fields<E: Engine<D>, const D: usize>(tolerance: f64) {
     let start: [f64; D] = core::array::from_fn(|axis| 0.33 - 0.21 * axis as f64);
     let velocity: [f64; D] = core::array::from_fn(|axis| 0.4 + 0.3 * axis as f64);
@@ -143,7 +144,7 @@ fn grains_follow_linear_fields<E: Engine<D>, const D: usize>(tolerance: f64) {
             core::array::from_fn(|i| -k * (x[i] - start[i] - offset[i]))
         });
         course(vec![shake.clone()], &|t, _, _| [3.0 * (40.0 * t).cos(); D]);
-        // v − u decays by exp(−K Δt), whatever Δt.
+        // v − u decays by exp(−K Δt) for any Δt.
         let wind: [f64; D] = core::array::from_fn(|axis| 2.0 - axis as f64);
         let drags =
             [(3.0, wind), (2.0, [0.0; D])].map(|(rate, velocity)| Force::Drag { rate, velocity });
@@ -266,7 +267,7 @@ fn threads_change_no_bits() {
     assert_eq!(one, bits(5));
 }
 
-/// Dust has no sound; only the force itself can say that a substep must be short.
+/// Dust carries no sound, so only the force itself can shorten a substep.
 #[test]
 fn a_strong_force_shortens_the_first_substep() {
     let pull = Pull {
@@ -284,13 +285,13 @@ fn a_strong_force_shortens_the_first_substep() {
     );
     setup.time_step = TimeStep::default();
     let simulation = Simulation::<f64, 2>::new(setup, &[batch]).expect("a good setup");
-    // It crosses 0.4 of a cell of 0.1 m at √(0.4 × 0.1 × 1e4) = 20 m/s.
+    // The grain crosses 0.4 of a cell of 0.1 m with √(0.4 × 0.1 × 1e4) = 20 m/s.
     let (dt, _) = simulation.next_dt();
     assert!((dt / (0.04 / 20.0) - 1.0).abs() < 1e-3, "{dt}");
 }
 
 #[test]
-fn what_cannot_be_is_named() {
+fn an_impossible_force_is_named() {
     let bad = Force::Drag {
         rate: -1.0,
         velocity: [0.0; 2],

@@ -1,5 +1,6 @@
-//! The simulator through its public interface. One program, so that the crate is linked once; only the count of
-//! allocations is a program of its own, since its allocator counts what other tests ask for.
+//! Tests of the simulator through its public interface, in one binary, so that the crate is linked once.
+//!
+//! The test of allocations is a binary of its own: its global allocator would count the allocations of other tests.
 
 mod against_reference;
 mod checkpoint;

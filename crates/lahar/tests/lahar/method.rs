@@ -2,7 +2,8 @@
 //!
 //! Each check is a function over [`Engine`]; the table at the end runs all of them on each engine.
 
-use crate::engine::{Engine, Fast, Numbers, Oracle, State, oracle_of, times};
+use crate::engine::{Engine, Fast, Oracle, State, oracle_of, times};
+use crate::fixtures::Random;
 use lahar::boundary::{Contact, Domain, Sides, WallStyle};
 use lahar::kernel::{BSpline, Cubic, Linear, Quadratic};
 use lahar::material::{
@@ -100,7 +101,7 @@ fn ball<const D: usize>(
     radius: f64,
     dx: f64,
     jitter: f64,
-    numbers: &mut Numbers,
+    random: &mut Random,
 ) -> ParticleBatch<D> {
     let side = (4.0 * radius).ceil() as usize;
     let mut position = Vec::new();
@@ -108,7 +109,7 @@ fn ball<const D: usize>(
         // From the centre, in cells.
         let offset: [f64; D] = core::array::from_fn(|axis| {
             let k = number / side.pow(axis as u32) % side;
-            (k as f64 + 0.5) / 2.0 - radius + 0.25 * jitter * numbers.signed()
+            (k as f64 + 0.5) / 2.0 - radius + 0.25 * jitter * random.signed()
         });
         if offset.iter().map(|x| x * x).sum::<f64>() <= radius * radius {
             position.push(core::array::from_fn(|axis| {
@@ -125,13 +126,13 @@ fn ball<const D: usize>(
 
 /// A ball with a different velocity, C and F on each particle, up to 1 m/s, 1/s and 3 %.
 fn stirred_ball<const D: usize>(dx: f64) -> ParticleBatch<D> {
-    let mut numbers = Numbers(7);
-    let mut batch = ball([0.4; D], 2.5, dx, 1.0, &mut numbers);
+    let mut random = Random(7);
+    let mut batch = ball([0.4; D], 2.5, dx, 1.0, &mut random);
     let count = batch.position.len();
-    batch.velocity = (0..count).map(|_| numbers.vector()).collect();
-    batch.affine = (0..count).map(|_| numbers.matrix(1.0)).collect();
+    batch.velocity = (0..count).map(|_| random.vector()).collect();
+    batch.affine = (0..count).map(|_| random.rows(1.0)).collect();
     let mut gradient = || {
-        let mut f = numbers.matrix(0.03);
+        let mut f = random.rows(0.03);
         for (axis, row) in f.iter_mut().enumerate() {
             row[axis] += 1.0;
         }
@@ -346,15 +347,15 @@ fn k1_quadratic_kernel_table() {
 /// P2G then G2P of v = v⁰ + A x with C = A returns v and C.
 fn k2_affine_field<E: Engine<D>, const D: usize>() {
     let (dx, dt) = (0.1, 1e-3);
-    let mut numbers = Numbers(3);
-    let (v0, a) = (numbers.vector::<D>(), numbers.matrix::<D>(1.0));
+    let mut random = Random(3);
+    let (v0, a) = (random.vector::<D>(), random.rows::<D>(1.0));
     for (kernel, force) in FORMS {
         let setup = Setup {
             kernel,
             force,
             ..setup(dx, dt, dust())
         };
-        let mut batch = ball([0.4; D], 3.0, dx, 1.0, &mut numbers);
+        let mut batch = ball([0.4; D], 3.0, dx, 1.0, &mut random);
         let field = |x: [f64; D]| {
             let ax = times(a, x);
             core::array::from_fn(|i| v0[i] + ax[i])
@@ -488,7 +489,7 @@ fn moving_disc<E: Engine<2>>(start: Start, scheme: Setup<2>, dt: f64) -> (Setup<
         time_step: TimeStep::Fixed(dt),
         ..scheme
     };
-    let mut batch = ball([0.0; 2], 4.0, setup.dx, 0.0, &mut Numbers(1));
+    let mut batch = ball([0.0; 2], 4.0, setup.dx, 0.0, &mut Random(1));
     let a = start.velocity_gradient();
     batch.velocity = batch.position.iter().map(|&x| times(a, x)).collect();
     batch.affine = vec![a; batch.position.len()];
@@ -691,7 +692,7 @@ fn k6_mass_and_count<E: Engine<D>, const D: usize>() {
                     }),
                     ..setup(0.1, 1e-3, fluid(400.0, 0.0))
                 };
-                let batch = ball([0.45; D], 2.0, 0.1, 1.0, &mut Numbers(5));
+                let batch = ball([0.45; D], 2.0, 0.1, 1.0, &mut Random(5));
                 let mut engine = E::new(&setup, &[batch]);
                 let mass = |p: &[State<D>]| p.iter().map(|p| (p.id, p.mass)).collect::<Vec<_>>();
                 let start = mass(&engine.particles());
@@ -848,7 +849,7 @@ fn k8_free_fall<E: Engine<D>, const D: usize>() {
                 gravity,
                 ..setup(0.1, dt, model)
             };
-            let mut batch = ball([0.3; D], 1.5, 0.1, 1.0, &mut Numbers(9));
+            let mut batch = ball([0.3; D], 1.5, 0.1, 1.0, &mut Random(9));
             let mut velocity = [0.25; D];
             velocity[1] = v0;
             batch.velocity = vec![velocity];

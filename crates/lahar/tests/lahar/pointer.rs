@@ -1,4 +1,4 @@
-//! The hand that stirs: by its laws, and the engine against the oracle.
+//! The pointer's actions: against formulas, and the engine against the oracle.
 
 use crate::fixtures::brawl;
 use lahar::material::Dust;
@@ -21,30 +21,20 @@ fn dust<const D: usize>(dx: f64, dt: f64) -> Setup<D> {
     }
 }
 
-/// The hand's attraction, as mpm128 has it: a d/(|d| + softening) on each node, at any distance.
+/// The pointer attracts each node by a d/(|d| + softening) at any distance, as mpm128 does.
 #[test]
-fn the_hand_pulls_by_its_law() {
+fn the_pointer_attracts_by_its_law() {
     let (dx, dt, pull, softening) = (0.1, 1e-3, 100.0, 0.01);
-    let dust = Material {
-        name: "dust".into(),
-        density: 1.0,
-        model: Model::Dust(Dust),
-    };
-    let setup = Setup::<2> {
-        time_step: TimeStep::Fixed(dt),
-        gravity: [0.0; 2],
-        ..Setup::new(dx, vec![dust])
-    };
-    // On a node: of its stencil's 3 × 3 nodes an axis has weights 1/8, 3/4, 1/8.
+    // The particle lies on a node, so the weights along an axis are 1/8, 3/4, 1/8.
     let batch = ParticleBatch {
         position: vec![[0.3, 0.5]],
         volume: vec![dx * dx],
         ..ParticleBatch::default()
     };
-    let hand = [0.32, 0.1];
-    let mut simulation = Simulation::<f64, 2>::new(setup, &[batch]).unwrap();
+    let place = [0.32, 0.1];
+    let mut simulation = Simulation::<f64, 2>::new(dust(dx, dt), &[batch]).unwrap();
     simulation.command(Command::Pointer(Some(Pointer {
-        position: [hand[0], hand[1], 0.0],
+        position: [place[0], place[1], 0.0],
         radius: f64::INFINITY,
         softening,
         action: PointerAction::Attract(pull),
@@ -55,7 +45,7 @@ fn the_hand_pulls_by_its_law() {
     for (i, w_i) in weights.iter().enumerate() {
         for (j, w_j) in weights.iter().enumerate() {
             let node = [0.2 + 0.1 * i as f64, 0.4 + 0.1 * j as f64];
-            let d = [hand[0] - node[0], hand[1] - node[1]];
+            let d = [place[0] - node[0], place[1] - node[1]];
             let softened = d[0].hypot(d[1]) + softening;
             for axis in 0..2 {
                 expected[axis] += w_i * w_j * pull * dt * d[axis] / softened;
@@ -70,28 +60,29 @@ fn the_hand_pulls_by_its_law() {
     }
 }
 
-/// incremental_mpm's push of a particle at `x` by a mouse at `hand`: ½ (|d|/10)⁴ d/|d| a substep.
-fn published_push<const D: usize>(x: [f64; D], hand: [f64; D]) -> [f64; D] {
-    let squared: f64 = (0..D).map(|i| (x[i] - hand[i]) * (x[i] - hand[i])).sum();
+/// Returns the change of velocity per substep that incremental_mpm gives a particle at `x` by a mouse at `mouse`:
+/// ½ (|d|/10)⁴ d/|d|.
+fn published_push<const D: usize>(x: [f64; D], mouse: [f64; D]) -> [f64; D] {
+    let squared: f64 = (0..D).map(|i| (x[i] - mouse[i]) * (x[i] - mouse[i])).sum();
     let distance = squared.sqrt();
     if distance >= 10.0 {
         return [0.0; D];
     }
     let factor = (distance / 10.0).sqrt().powi(8);
-    core::array::from_fn(|i| (x[i] - hand[i]) / distance * factor * 0.5)
+    core::array::from_fn(|i| (x[i] - mouse[i]) / distance * factor * 0.5)
 }
 
 fn at<const D: usize>(position: [f64; D]) -> [f64; 3] {
     core::array::from_fn(|i| position.get(i).copied().unwrap_or(0.0))
 }
 
-/// Single grains of dust, far apart: each is pushed where the substep has moved it to.
+/// Checks that a single grain of dust is pushed at the place to which the substep has moved it.
 fn grains_are_pushed_as_published<T: Instance<D>, const D: usize>(tolerance: f64) {
     let dt = 0.1;
-    let hand: [f64; D] = core::array::from_fn(|i| [31.0, 27.5, 30.25][i]);
+    let mouse: [f64; D] = core::array::from_fn(|i| [31.0, 27.5, 30.25][i]);
     let offsets = [[3.0, 4.0, 0.0], [-6.5, 7.0, 1.0], [9.0, 5.0, 0.0], [0.0; 3]];
     for offset in offsets {
-        let position = core::array::from_fn(|i| hand[i] + offset[i]);
+        let position = core::array::from_fn(|i| mouse[i] + offset[i]);
         let velocity: [f64; D] = core::array::from_fn(|i| [0.5, -0.25, 0.125][i]);
         let batch = ParticleBatch {
             position: vec![position],
@@ -101,7 +92,7 @@ fn grains_are_pushed_as_published<T: Instance<D>, const D: usize>(tolerance: f64
         };
         let mut simulation = Simulation::<T, D>::new(dust(1.0, dt), &[batch]).unwrap();
         simulation.command(Command::Pointer(Some(Pointer {
-            position: at(hand),
+            position: at(mouse),
             radius: 10.0,
             softening: 0.0,
             action: PointerAction::Push {
@@ -111,7 +102,7 @@ fn grains_are_pushed_as_published<T: Instance<D>, const D: usize>(tolerance: f64
         })));
         simulation.substep().unwrap();
         let moved = core::array::from_fn(|i| position[i] + dt * velocity[i]);
-        let push = published_push(moved, hand);
+        let push = published_push(moved, mouse);
         let snapshot = simulation.snapshot(&[Field::Position, Field::Velocity]);
         let found: Vec<_> = (snapshot.columns.iter().map(|(_, c)| c.to_f64())).collect();
         for axis in 0..D {
@@ -140,9 +131,9 @@ fn grains_are_pushed_as_published_3d() {
     grains_are_pushed_as_published::<f32, 3>(1e-6);
 }
 
-/// In incremental_mpm a grain beyond the soft wall is pushed first and slowed down after.
+/// A cushion slows down after the pointer has pushed, as in incremental_mpm.
 #[test]
-fn a_cushion_has_the_last_word() {
+fn a_cushion_acts_after_the_pointer() {
     let setup = Setup {
         cushion: Some(Cushion {
             inside: Corners {
@@ -172,11 +163,11 @@ fn a_cushion_has_the_last_word() {
     let velocity = simulation.snapshot(&[Field::Velocity]).columns[0]
         .1
         .to_f64();
-    // Pushed by (0.8, 0.6); ½ is what keeps it inside for a second.
+    // The push is (0.8, 0.6); a velocity of 0.5 keeps the grain inside for a second.
     assert!((velocity[0] - 0.5).abs() < 1e-13 && (velocity[1] - 0.6).abs() < 1e-13);
 }
 
-/// Every action, in every transfer, on bodies of every material.
+/// Compares engine and oracle with every action and every transfer, on bodies of every material.
 fn the_engine_is_the_oracle<const D: usize>(cells: usize, steps: usize)
 where
     f64: Instance<D>,

@@ -1,5 +1,6 @@
-//! Probes read what is there, when they are due, and change nothing.
+//! Probes read the right values when they are due, and do not change the simulation.
 
+use crate::fixtures::Random;
 use lahar::material::Fluid;
 use lahar::particles::Field;
 use lahar::{
@@ -11,7 +12,7 @@ const DENSITY: f64 = 1000.0; // kg/m³
 const SOUND_SPEED: f64 = 50.0; // m/s
 const DX: f64 = 0.05; // m
 
-/// A box 1 m wide with a fluid in it, walls on their planes.
+/// Returns a box 1 m wide with walls on their planes, and water as its material.
 fn tank<const D: usize>(probes: Vec<Probe<D>>) -> Setup<D> {
     let slip = Contact::Slip { friction: 0.0 };
     let water = Material {
@@ -34,8 +35,8 @@ fn tank<const D: usize>(probes: Vec<Probe<D>>) -> Setup<D> {
     }
 }
 
-/// Two particles a cell and axis in `min .. max`, each up to `jitter` cells off its place, under the
-/// pressure `pressure` of their place \[Pa\].
+/// Returns two particles per cell and axis in `min .. max`, each up to half of `jitter` cells off its lattice point, under
+/// the pressure that `pressure` gives at their place \[Pa\].
 fn column<const D: usize>(
     min: [f64; D],
     max: [f64; D],
@@ -44,18 +45,14 @@ fn column<const D: usize>(
 ) -> ParticleBatch<D> {
     let counts: [usize; D] =
         core::array::from_fn(|axis| ((max[axis] - min[axis]) / DX * 2.0).round() as usize);
-    let mut random = 1_u64;
+    let mut random = Random(1);
     let mut position = Vec::new();
     for number in 0..counts.iter().product() {
         let mut number: usize = number;
         position.push(core::array::from_fn(|axis| {
             let k = number % counts[axis];
             number /= counts[axis];
-            random = random
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            let unit = (random >> 11) as f64 / (1_u64 << 53) as f64;
-            min[axis] + (k as f64 + 0.5) * DX / 2.0 + jitter * DX * (unit - 0.5)
+            min[axis] + (k as f64 + 0.5) * DX / 2.0 + jitter * DX * random.between(-0.5, 0.5)
         }));
     }
     let fluid = Fluid::inviscid(DENSITY * SOUND_SPEED * SOUND_SPEED);
@@ -87,7 +84,7 @@ fn pressure<const D: usize>(at: [f64; D], plate: Option<Plate<D>>) -> Probe<D> {
     })
 }
 
-/// What each probe reads at the start.
+/// Returns the first value that each probe reads at the start.
 fn at_start<T: Instance<D>, const D: usize>(
     probes: Vec<Probe<D>>,
     particles: &ParticleBatch<D>,
@@ -100,8 +97,8 @@ fn at_start<T: Instance<D>, const D: usize>(
         .collect()
 }
 
-/// A pressure that is linear in the place is read exactly but for what holds the slope (a few ten-thousandths
-/// of it): inside, on a wall, in a corner, and over a plate on the wall as at its middle.
+/// A pressure that is linear in x is read exactly but for the regularization of the slope (a few ten-thousandths of it):
+/// inside, on a wall, in a corner, and over a plate on the wall as at its center.
 #[test]
 fn linear_pressure() {
     let rising = |x: [f64; 2]| 5000.0 - 9810.0 * x[1] + 3000.0 * x[0];
@@ -132,7 +129,7 @@ fn linear_pressure() {
 }
 
 #[test]
-fn linear_pressure_in_3d_and_nothing_in_the_air() {
+fn linear_pressure_in_3d_and_zero_in_the_air() {
     let rising = |x: [f64; 3]| 5000.0 - 9810.0 * x[1] + 3000.0 * x[2];
     let particles = column([-1.0; 3], [-0.4, -0.4, -0.4], 0.3, rising);
     let at = [-0.7, -1.0, -0.7];
@@ -160,10 +157,11 @@ fn linear_pressure_in_3d_and_nothing_in_the_air() {
     assert_eq!(read[2], 0.0);
 }
 
-/// A velocity that is linear in the place is read exactly but for what holds the slope, inside, on a wall and
-/// in a corner; none where nothing is, and of an impact nothing far from what the particles have.
+/// Checks that a velocity linear in x is read exactly but for the regularization of the slope, inside, on a wall and in a
+/// corner; that 0 is read where there are no particles; and that readings across an impact stay near the particles'
+/// velocities.
 fn velocities<T: Instance<D>, const D: usize>() {
-    // Shear, turn and stretch [1/s]: each component depends on all coordinates.
+    // Shear, rotation and stretch [1/s]: each component depends on all coordinates.
     let gradient = |i: usize, j: usize| 1.0 + i as f64 - 0.7 * j as f64;
     let exact = |x: [f64; D]| -> [f64; D] {
         core::array::from_fn(|i| {
@@ -203,7 +201,7 @@ fn velocities<T: Instance<D>, const D: usize>() {
     }
     assert_eq!(values[3], [0.0; D]);
 
-    // One half of the fluid runs into the other: no place reads more than half of the jump beyond either.
+    // One half of the fluid runs into the other: a reading overshoots either side by at most half of the jump.
     batch.velocity = batch
         .position
         .iter()
@@ -232,7 +230,7 @@ fn linear_velocity() {
     velocities::<f32, 3>();
 }
 
-/// A flat surface is found where it is, beside walls too; the mean is the filled volume's.
+/// A flat surface is found at its height, beside walls too; the mean height follows from the filled volume.
 #[test]
 fn heights() {
     let top = -0.35;
@@ -262,7 +260,7 @@ fn heights() {
     assert_eq!(read[1], -1.0);
 }
 
-/// The front of a step of fluid, on the way up and on the way down.
+/// The front of a step of fluid is found at its rising and at its falling side.
 #[test]
 fn fronts() {
     let front = |rising| {
@@ -275,7 +273,7 @@ fn fronts() {
     };
     let particles = column([-0.7, -1.0], [-0.3, -0.5], 0.0, |_| 0.0);
     let read = at_start::<f64, 2>(vec![front(true), front(false)], &particles);
-    // Between the last wet column's middle and the first dry one's.
+    // The front lies between the center of the last wet column and that of the first dry one.
     assert!((read[0] + 0.3 - 0.4 * DX).abs() < 0.01 * DX, "{read:?}");
     assert!((read[1] + 0.7 + 0.4 * DX).abs() < 0.01 * DX, "{read:?}");
     let thin = column([-0.7, -1.0], [-0.3, -0.975], 0.0, |_| 0.0);
@@ -285,8 +283,8 @@ fn fronts() {
     );
 }
 
-/// Each probe is read at its own rate, at the end of the first substep at or after it is due, and
-/// the particles have the bits of a run without probes.
+/// Each probe is read at its own rate, at the end of the first substep that reaches the time when it is due, and the
+/// particles have the bits of a run without probes.
 #[test]
 fn probes_are_read_when_due_and_change_nothing() {
     let run = |probes: Vec<Probe<2>>| {
@@ -328,14 +326,14 @@ fn probes_are_read_when_due_and_change_nothing() {
             sample.time
         );
     }
-    // Frames end at its moments.
+    // Frames end at the times of this probe.
     assert_eq!(read[1].samples.len(), 11);
     for (frame, sample) in read[1].samples.iter().enumerate() {
         assert!((sample.time - 0.02 * frame as f64).abs() < 1e-12);
     }
 }
 
-/// The mean force on a wall is the impulse that it took over the time between readings.
+/// The force on a wall is the mean between two readings: its impulse over the time between them.
 #[test]
 fn forces_add_up_to_the_impulse() {
     let mut setup = tank(vec![Probe {
@@ -356,21 +354,21 @@ fn forces_add_up_to_the_impulse() {
     let sum: f64 = steps
         .map(|s| s[1].values[1] * (s[1].time - s[0].time))
         .sum();
-    let taken = simulation.boundary_impulses();
-    let floor = taken.iter().find(|wall| wall.name == "bottom").unwrap();
+    let walls = simulation.boundary_impulses();
+    let floor = walls.iter().find(|wall| wall.name == "bottom").unwrap();
     let last = read.samples.last().unwrap();
     assert_eq!(read.samples.len(), 14);
     assert!(sum < 0.0 && (simulation.time() - last.time) < 1.0 / 130.0);
-    // What the floor took since the last reading is not in the sum: an eighth of an interval at the most.
+    // The impulse since the last reading is not in the sum.
     assert!(
         (sum / floor.impulse[1] - last.time / simulation.time()).abs() < 0.02,
         "{sum} of {floor:?}"
     );
 }
 
-/// Gauges in walls feel the weight of what rests on them: on the floor, in corners, on the sides,
-/// over plates.
-fn sensors<T: Instance<D>, const D: usize>() {
+/// Checks that pressure gauges in walls read the hydrostatic pressure: on the floor, in corners, on the sides, and over
+/// plates.
+fn gauges_in_walls<T: Instance<D>, const D: usize>() {
     let g = 9.81;
     let depth = |x: [f64; D]| -0.4 - x[1];
     let weight = |x: [f64; D]| DENSITY * g * depth(x);
@@ -392,7 +390,7 @@ fn sensors<T: Instance<D>, const D: usize>() {
     let mut simulation = Simulation::<T, D>::new(setup, &[particles]).unwrap();
     simulation.advance_to(0.2).unwrap();
     let read = simulation.take_probe_samples();
-    // A face in the corner reaches up the side: its middle is half a cell above the floor.
+    // A gauge in the corner reaches up the side: its center is half a cell above the floor.
     let mut in_corner = [-1.0; D];
     in_corner[1] += 0.5 * DX;
     for (probe, x) in read.iter().zip([on_floor, in_corner, at_side, on_floor]) {
@@ -407,18 +405,18 @@ fn sensors<T: Instance<D>, const D: usize>() {
 }
 
 #[test]
-fn sensors_in_walls_feel_the_weight() {
-    sensors::<f64, 2>();
-    sensors::<f32, 3>();
+fn gauges_in_walls_read_the_hydrostatic_pressure() {
+    gauges_in_walls::<f64, 2>();
+    gauges_in_walls::<f32, 3>();
 }
 
 #[test]
-fn what_cannot_be_read_is_refused_by_its_key() {
+fn impossible_probes_are_refused_by_their_key() {
     let particles = column([-1.0, -1.0], [-0.6, -0.3], 0.0, |_| 0.0);
     let refused = |probe: Probe<2>| {
         let setup = tank(vec![probe]);
         let error = Simulation::<f32, 2>::new(setup, core::slice::from_ref(&particles)).err();
-        error.expect("it is refused").key
+        error.expect("an error").key
     };
     let mut never = pressure([0.0; 2], None);
     never.rate = 0.0;

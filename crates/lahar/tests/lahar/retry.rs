@@ -1,4 +1,5 @@
-//! Frames that fail begin again with half the time step: what failed, what is tried, what is left.
+//! A frame that fails is retried from its start with half the time step: the report, the retries, and the state that is
+//! left.
 
 use crate::fixtures::{ALL, bits, brawl};
 use lahar::material::{Corotated, Dust, Fluid, lame};
@@ -9,7 +10,7 @@ use lahar::{
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A ball of jelly thrown at a wall, with a fixed step.
+/// Returns a ball of jelly thrown at a wall, with a fixed step.
 fn stiff_brawl<const D: usize>(dt: f64) -> (Setup<D>, Vec<ParticleBatch<D>>) {
     let (mut setup, mut batches) = brawl::<D>(16);
     batches.retain(|batch| batch.material == 1);
@@ -22,7 +23,7 @@ fn stiff_brawl<const D: usize>(dt: f64) -> (Setup<D>, Vec<ParticleBatch<D>>) {
 const TOO_LONG: f64 = 8e-3;
 const FRAME: f64 = 64.0 * TOO_LONG;
 
-/// The bits after each frame, and what was told.
+/// Runs `count` frames and returns the bits after each and all retries.
 fn frames<T: Instance<D>, const D: usize>(
     threads: usize,
     (setup, batches): &(Setup<D>, Vec<ParticleBatch<D>>),
@@ -30,7 +31,7 @@ fn frames<T: Instance<D>, const D: usize>(
 ) -> (Vec<Vec<u64>>, Vec<Retry>) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     pool.build().expect("a pool").install(|| {
-        let mut simulation = Simulation::<T, D>::new(setup.clone(), batches).expect("sound");
+        let mut simulation = Simulation::<T, D>::new(setup.clone(), batches).expect("a good setup");
         let (mut all, mut retries) = (Vec::new(), Vec::new());
         for k in 1..=count {
             let end = k as f64 * FRAME;
@@ -46,8 +47,8 @@ fn frames<T: Instance<D>, const D: usize>(
     })
 }
 
-/// The frame that is tried again is to the bit what it would have been with the shorter step at
-/// first, on any number of threads.
+/// Checks that a retried frame has the bits of a frame that took the shorter step from the first, on any number of
+/// threads.
 fn a_retried_frame_is_a_frame_of_the_shorter_step<T: Instance<D>, const D: usize>() {
     let (retried, retries) = frames::<T, D>(1, &stiff_brawl(TOO_LONG), 2);
     let first = &retries[0];
@@ -56,13 +57,13 @@ fn a_retried_frame_is_a_frame_of_the_shorter_step<T: Instance<D>, const D: usize
     assert_eq!(first.failure.dt_limit, DtLimit::Fixed);
     assert!((1..=64).contains(&first.failure.substep), "{first}");
     let mut of_first = retries.iter().filter(|retry| retry.time == 0.0);
-    let part = of_first.next_back().expect("there was one").part;
+    let part = of_first.next_back().expect("a retry").part;
     let (direct, none) = frames::<T, D>(1, &stiff_brawl(TOO_LONG * part), 1);
     assert_eq!(none, []);
     assert!(direct[0] == retried[0], "{part}");
     for threads in [2, 3] {
-        let (others, told) = frames::<T, D>(threads, &stiff_brawl(TOO_LONG), 2);
-        assert_eq!(told, retries);
+        let (others, reported) = frames::<T, D>(threads, &stiff_brawl(TOO_LONG), 2);
+        assert_eq!(reported, retries);
         assert!(others == retried, "{threads} threads");
     }
 }
@@ -79,7 +80,7 @@ fn a_retried_frame_is_a_frame_of_the_shorter_step_3d() {
     a_retried_frame_is_a_frame_of_the_shorter_step::<f64, 3>();
 }
 
-/// An acceleration that is not a number while armed, from 0.1 s on.
+/// A force field that returns NaN while it is armed, from 0.1 s on.
 #[derive(Debug, Default)]
 struct Fault(AtomicBool);
 
@@ -90,7 +91,7 @@ impl<const D: usize> AccelerationField<D> for Fault {
     }
 }
 
-/// The brawl with a fault that goes away when the frame has been tried again `faults` times.
+/// The brawl with a fault that ends when a frame has been retried a given number of times.
 struct Faulty<const D: usize>
 where
     f32: Instance<D>,
@@ -113,43 +114,45 @@ where
         }
     }
 
-    /// One frame of 0.02 s with `faults`; what was told, and how the last substeps were limited.
+    /// Runs a frame of 0.02 s that fails `faults` times. Returns what limited its last substep, and its retries.
     fn frame(&mut self, number: u32, faults: usize) -> (Result<DtLimit, Failure>, Vec<Retry>) {
         self.fault.0.store(faults > 0, Ordering::Relaxed);
-        let mut told = Vec::new();
+        let mut retries = Vec::new();
         let end = f64::from(number) * 0.02;
         let done = frame(
             &mut self.simulation,
             |simulation| simulation.advance_to(end),
             |retry: &Retry| {
-                told.push(retry.clone());
-                self.fault.0.store(told.len() < faults, Ordering::Relaxed);
+                retries.push(retry.clone());
+                self.fault
+                    .0
+                    .store(retries.len() < faults, Ordering::Relaxed);
             },
         );
-        (done.map(|advance| advance.limit), told)
+        (done.map(|advance| advance.limit), retries)
     }
 }
 
-/// Doubled after four good frames, until it is what it was.
+/// The time step doubles after every four good frames until it is restored.
 #[test]
 fn the_time_step_recovers() {
     let mut faulty = Faulty::<2>::new();
     for number in 1..=5 {
         assert_eq!(faulty.frame(number, 0).1, []);
     }
-    let (done, told) = faulty.frame(6, 2);
+    let (done, retries) = faulty.frame(6, 2);
     assert_eq!(done, Ok(DtLimit::Retry));
-    let parts: Vec<f64> = told.iter().map(|retry| retry.part).collect();
+    let parts: Vec<f64> = retries.iter().map(|retry| retry.part).collect();
     assert_eq!(parts, [0.5, 0.25]);
-    assert!((told[0].time - 0.1).abs() < 1e-12 && told[1].time == told[0].time);
-    let text = told[1].to_string();
+    assert!((retries[0].time - 0.1).abs() < 1e-12 && retries[1].time == retries[0].time);
+    let text = retries[1].to_string();
     assert!(text.contains("with 1/4 of the time step"), "{text}");
     assert!(text.contains("limited by retry"), "{text}");
     let mut substeps = Vec::new();
     for number in 7..=15 {
         let before = faulty.simulation.substeps();
-        let (done, told) = faulty.frame(number, 0);
-        assert_eq!(told, []);
+        let (done, retries) = faulty.frame(number, 0);
+        assert_eq!(retries, []);
         substeps.push((faulty.simulation.substeps() - before, done.unwrap()));
     }
     let limits: Vec<bool> = (substeps.iter().map(|(_, limit)| *limit == DtLimit::Retry)).collect();
@@ -161,8 +164,8 @@ fn the_time_step_recovers() {
     );
 }
 
-/// When 1/64 of the step has not helped, the frame's start is what is left.
-fn what_cannot_be_helped_ends_at_the_frames_start<const D: usize>()
+/// Checks that a frame that fails even with 1/64 of the step leaves the state of its start.
+fn a_hopeless_frame_leaves_the_state_of_its_start<const D: usize>()
 where
     f32: Instance<D>,
 {
@@ -171,12 +174,12 @@ where
         assert_eq!(faulty.frame(number, 0).1, []);
     }
     let before = bits(&faulty.simulation.snapshot(ALL));
-    faulty.simulation.diagnostics(); // the shortest substep is since this was asked
+    faulty.simulation.diagnostics(); // its shortest substep is that since the last call
     let totals = faulty.simulation.diagnostics();
-    let (done, told) = faulty.frame(6, usize::MAX);
+    let (done, retries) = faulty.frame(6, usize::MAX);
     let failure = done.unwrap_err();
     assert_eq!(
-        told.last().map(|retry| (told.len(), retry.part)),
+        retries.last().map(|retry| (retries.len(), retry.part)),
         Some((6, 1.0 / 64.0))
     );
     let text = failure.to_string();
@@ -191,7 +194,7 @@ where
     }
     assert!(before == bits(&faulty.simulation.snapshot(ALL)));
     assert_eq!(totals, faulty.simulation.diagnostics());
-    // The fault gone, it goes on as if nothing had been.
+    // Without the fault, the run continues as if nothing had happened.
     let mut untouched = Faulty::<D>::new();
     for number in 1..=5 {
         assert_eq!(untouched.frame(number, 0).1, []);
@@ -203,13 +206,13 @@ where
 }
 
 #[test]
-fn what_cannot_be_helped_ends_at_the_frames_start_2d() {
-    what_cannot_be_helped_ends_at_the_frames_start::<2>();
+fn a_hopeless_frame_leaves_the_state_of_its_start_2d() {
+    a_hopeless_frame_leaves_the_state_of_its_start::<2>();
 }
 
 #[test]
-fn what_cannot_be_helped_ends_at_the_frames_start_3d() {
-    what_cannot_be_helped_ends_at_the_frames_start::<3>();
+fn a_hopeless_frame_leaves_the_state_of_its_start_3d() {
+    a_hopeless_frame_leaves_the_state_of_its_start::<3>();
 }
 
 fn thrown<T: Instance<2>>(from: f64, speed: f64) -> Result<(), Failure> {
@@ -231,7 +234,7 @@ fn thrown<T: Instance<2>>(from: f64, speed: f64) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What moves too far for places to be told apart is stopped, and said so, in time.
+/// A particle that moves too far for its place to be represented stops the run with a failure that says so.
 #[test]
 fn a_particle_out_of_range_is_a_failure() {
     for failure in [thrown::<f32>(0.0, 1e30), thrown::<f64>(0.0, 1e30)] {
@@ -241,7 +244,7 @@ fn a_particle_out_of_range_is_a_failure() {
             "{text}"
         );
     }
-    // 90 cells a substep, 1000 cells from the last block that has a name.
+    // 90 cells per substep, from 1000 cells before the last block that can be numbered.
     let near = 0.1 * (8.0 * f64::from(1 << 27) - 1000.0);
     for failure in [thrown::<f32>(near, 9e3), thrown::<f64>(near, 9e3)] {
         let failure = failure.unwrap_err();
@@ -252,7 +255,7 @@ fn a_particle_out_of_range_is_a_failure() {
     }
 }
 
-/// A fluid that a command makes impossible: what was ordered stays when the frame begins again.
+/// Commands that were given during a failed frame stay in force when it is retried.
 #[test]
 fn commands_outlast_a_retry() {
     let water = Material {
@@ -287,14 +290,14 @@ fn commands_outlast_a_retry() {
     assert_eq!((retry.time, simulation.substeps()), (0.0, 0));
     assert_eq!(simulation.gravity(), [0.0, -2.0, 0.0]);
     assert_eq!(simulation.next_dt().0, 0.5 * stiffer_dt);
-    assert!(simulation.substep().is_err(), "the hand is still there");
+    assert!(simulation.substep().is_err(), "the pointer still acts");
     simulation.command(Command::Pointer(None));
     simulation.retry_frame(&failure).unwrap();
     simulation.substep().unwrap();
 }
 
 #[test]
-fn without_a_mark_there_is_no_way_back_and_the_mark_counts_as_memory() {
+fn a_retry_needs_the_start_of_a_frame_whose_copy_counts_as_memory() {
     let (setup, batches) = brawl::<3>(16);
     let mut simulation = Simulation::<f32, 3>::new(setup, &batches).unwrap();
     let particles = simulation.particle_count();
@@ -314,5 +317,5 @@ fn without_a_mark_there_is_no_way_back_and_the_mark_counts_as_memory() {
     assert_eq!(simulation.retry_frame(&failure), None);
     simulation.begin_frame();
     let bytes = simulation.memory().retry_bytes / particles;
-    assert!((64..160).contains(&bytes), "{bytes} bytes a particle");
+    assert!((64..160).contains(&bytes), "{bytes} bytes per particle");
 }

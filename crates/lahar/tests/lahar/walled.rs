@@ -1,15 +1,15 @@
-//! Words that tests of walls and of colliders share.
+//! Contact laws and readings that tests of walls and of colliders share.
 
 use lahar::particles::Field;
 use lahar::{Contact, Sides, Simulate};
 
-/// Lets nothing through and nothing go, without friction.
+/// A contact that neither lets material through nor lets it go, without friction.
 pub(crate) const SLIP: Contact = Contact::Slip { friction: 0.0 };
 
-/// Lets go freely, without friction.
+/// A contact that lets material go freely, without friction.
 pub(crate) const SEPARATE: Contact = Contact::Separate { friction: 0.0 };
 
-/// The same wall at both ends of an axis.
+/// Returns sides with the same wall at both ends of an axis.
 pub(crate) fn both(contact: Contact) -> Sides {
     Sides::Walls {
         low: contact,
@@ -17,7 +17,7 @@ pub(crate) fn both(contact: Contact) -> Sides {
     }
 }
 
-/// A vector of every particle, by ascending id.
+/// Returns a vector field of all particles, by ascending id.
 pub(crate) fn field<const D: usize>(simulation: &impl Simulate, field: Field) -> Vec<[f64; D]> {
     let snapshot = simulation.snapshot(&[field]);
     let numbers = snapshot.columns[0].1.to_f64();

@@ -1,5 +1,5 @@
-//! Walls on their planes: waves see them where they are drawn, a body at rest stays, and what leaves
-//! a `separate` wall leaves as if there were none.
+//! Walls on their planes: waves are reflected where the walls are drawn, a body at rest stays at rest, and a body leaves a
+//! `separate` wall as if there were none.
 
 use crate::walled::{SEPARATE, SLIP, both, field};
 use lahar::material::{Corotated, Fluid, lame};
@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 
 const DENSITY: f64 = 1000.0; // kg/m³
 
-/// Fluid with p = ρ₀c² (1/J − 1).
+/// Returns a fluid with p = ρ₀c² (1/J − 1).
 fn fluid(sound_speed: f64, tension: f64) -> Material {
     Material {
         name: "fluid".into(),
@@ -24,7 +24,7 @@ fn fluid(sound_speed: f64, tension: f64) -> Material {
     }
 }
 
-/// Two particles a cell and axis on a lattice that fills `min .. max` (whole half cells).
+/// Returns two particles per cell and axis on a lattice that fills `min .. max` (a whole number of half cells).
 fn lattice<const D: usize>(min: [f64; D], max: [f64; D], dx: f64) -> ParticleBatch<D> {
     let counts: [usize; D] =
         core::array::from_fn(|axis| ((max[axis] - min[axis]) / dx * 2.0).round() as usize);
@@ -42,8 +42,8 @@ fn lattice<const D: usize>(min: [f64; D], max: [f64; D], dx: f64) -> ParticleBat
     }
 }
 
-/// The first acoustic mode between two walls `cells` apart: its period over 2L/c, less 1, and what
-/// is left of the amplitude eight and a half periods after the first quarter.
+/// Runs the first acoustic mode between two walls `cells` apart. Returns its period over 2L/c, less 1, and the part of the
+/// amplitude that is left eight and a half periods after the first quarter.
 fn acoustic_mode<T: Instance<D>, const D: usize>(
     transfer: Transfer,
     cells: usize,
@@ -111,9 +111,9 @@ fn acoustic_mode<T: Instance<D>, const D: usize>(
     )
 }
 
-/// F6 of the validation cases. Zeroed nodes at the wall, which this once was, give .93 %.
+/// Validation case F6. Walls that zero the velocity of nodes give an error of 0.93 %.
 #[test]
-fn f6_walls_are_where_waves_see_them() {
+fn f6_waves_are_reflected_on_the_plane_of_a_wall() {
     for (transfer, kept) in [
         (Transfer::Apic, 0.995),
         (Transfer::Flip { blend: 1.0 }, 0.999),
@@ -129,7 +129,7 @@ fn f6_walls_are_where_waves_see_them() {
     assert!(amplitude > 0.995, "3D f32: {amplitude} is left");
 }
 
-/// Second order: a quarter of the error at half the spacing.
+/// The error is of second order: a quarter at half the spacing.
 #[test]
 fn the_error_of_walls_is_of_second_order() {
     let error = |cells| acoustic_mode::<f64, 2>(Transfer::Apic, cells, SLIP, SLIP).0;
@@ -137,7 +137,8 @@ fn the_error_of_walls_is_of_second_order() {
     assert!((3.5..4.5).contains(&ratio), "{ratio}");
 }
 
-/// A block of jelly in a corner, pressed against both walls by no one, moves away from them.
+/// Lets a block of jelly move out of a corner and returns the largest change of a velocity \[m/s\]. Nothing presses it
+/// against the walls.
 fn leave<T: Instance<D>, const D: usize>(transfer: Transfer, towards: f64, friction: f64) -> f64 {
     let dx = 0.05;
     let (lambda, mu) = lame(1e4, 0.3);
@@ -180,7 +181,7 @@ fn leave<T: Instance<D>, const D: usize>(transfer: Transfer, towards: f64, frict
     worst
 }
 
-/// A mirror image would hold it back: the wall lets go of what leaves.
+/// A mirror image would hold the body back, so a `separate` wall acts only where it pushes.
 #[test]
 fn a_body_that_leaves_a_separate_wall_keeps_its_velocity() {
     for transfer in [Transfer::Pic, Transfer::Flip { blend: 1.0 }, Transfer::Apic] {
@@ -198,7 +199,7 @@ fn a_body_that_leaves_a_separate_wall_keeps_its_velocity() {
 const DEPTH: f64 = 0.5; // m
 const GRAVITY: f64 = 9.81; // m/s²
 
-/// A tank, filled wall to wall, with the pressure of its depth.
+/// Returns a tank filled from wall to wall, at rest under its pressure.
 fn filled<const D: usize>(walls: Contact) -> (Setup<D>, ParticleBatch<D>) {
     let (dx, depth, g, sound_speed) = (0.05, DEPTH, GRAVITY, 20.0);
     let mut gravity = [0.0; D];
@@ -222,7 +223,7 @@ fn filled<const D: usize>(walls: Contact) -> (Setup<D>, ParticleBatch<D>) {
     (setup, batch)
 }
 
-/// A filled tank, left alone for `time` \[s\].
+/// Returns a filled tank after `time` \[s\].
 fn resting<T: Instance<D>, const D: usize>(walls: Contact, time: f64) -> Simulation<T, D> {
     let (setup, batch) = filled(walls);
     let mut simulation = Simulation::new(setup, &[batch]).unwrap();
@@ -230,7 +231,7 @@ fn resting<T: Instance<D>, const D: usize>(walls: Contact, time: f64) -> Simulat
     simulation
 }
 
-/// The largest speed over √(gH) and the largest move over H of a tank that was left alone.
+/// Returns the largest speed over √(gH) and the largest displacement over H in a filled tank after 0.5 s.
 fn tank<T: Instance<D>, const D: usize>(walls: Contact) -> (f64, f64) {
     let start = filled::<D>(walls).1.position;
     let simulation = resting::<T, D>(walls, 0.5);
@@ -262,9 +263,9 @@ fn a_tank_at_rest_stays_at_rest() {
     assert!(moved < 1e-3, "3D: moved by {moved:e} of the depth");
 }
 
-/// What friction may take: μ times the weight of a block of jelly that slides on the floor.
+/// Friction slows a block of jelly that slides on the floor by μ times its weight.
 #[test]
-fn a_block_slides_on_by_coulomb_s_law() {
+fn friction_follows_coulomb_s_law() {
     let (dx, g, friction, speed) = (0.025, 10.0, 0.3, 2.0);
     let (lambda, mu) = lame(1e6, 0.3);
     let material = Material {
@@ -297,9 +298,8 @@ fn a_block_slides_on_by_coulomb_s_law() {
     assert!(mean(&simulation).abs() < 0.01, "{}", mean(&simulation));
 }
 
-/// A block of water thrown into a corner of a tank, as far from balance as can be: by how much the
-/// change of its momentum differs from gravity's impulse less what the walls took, relative to the
-/// sum of all that they took.
+/// Throws a block of water into a corner of a tank. Returns by how much the change of its momentum differs from the impulse
+/// of gravity less the impulses of the walls, relative to the sum of the latter.
 fn imbalance<T: Instance<D>, const D: usize>(
     transfer: Transfer,
     style: WallStyle,
@@ -340,13 +340,16 @@ fn imbalance<T: Instance<D>, const D: usize>(
         let gained = after.momentum[axis] - before.momentum[axis];
         worst = worst.max((gained + taken - given).abs());
     }
-    assert!(all > 0.5 * after.mass, "the walls have hardly been touched");
+    assert!(
+        all > 0.5 * after.mass,
+        "the water has hardly touched the walls"
+    );
     worst / all
 }
 
-/// Nothing gives or takes momentum but gravity and walls, whose account is exact.
+/// Only gravity and walls change the momentum, and the impulses of walls account for it exactly.
 #[test]
-fn what_walls_take_is_what_the_material_loses() {
+fn impulses_of_walls_are_the_momentum_that_the_material_loses() {
     let nodes = WallStyle::Nodes { padding: 2 };
     for contact in [
         SLIP,
@@ -377,8 +380,8 @@ fn what_walls_take_is_what_the_material_loses() {
     }
 }
 
-/// In a tank at rest the floor carries the weight, each side the pressure on it, and their torques are
-/// those of pressure that grows with depth.
+/// In a tank at rest the floor carries the weight and each side the pressure on it; their torques are those of a pressure
+/// that grows with depth.
 #[test]
 fn walls_of_a_tank_at_rest_carry_its_pressure() {
     let (simulation, time) = (resting::<f32, 2>(SEPARATE, 0.5), 0.5);
