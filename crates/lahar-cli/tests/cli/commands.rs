@@ -1,79 +1,13 @@
-//! The binary as its users meet it: exit codes, what is on which stream, what is in the folder.
+//! Commands as their users start them: exit codes, the output on each stream, and the files in the folder.
 
-use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Command;
 
 use serde_json::Value;
-use tempfile::TempDir;
 
-/// The default scene, coarse enough for a test.
-const COARSE: [&str; 4] = ["dam-break", "--set", "dx=0.05", "--threads=1"];
-
-/// The program, in a folder and without a display.
-fn program(folder: &Path) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lahar"));
-    command.current_dir(folder);
-    for display in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
-        command.env_remove(display);
-    }
-    command
-}
-
-fn lahar(folder: &Path, words: &[&str]) -> Output {
-    (program(folder).args(words).output()).expect("the binary starts")
-}
-
-fn run(folder: &Path, words: &[&str]) -> Output {
-    let words: Vec<&str> = ["run"]
-        .iter()
-        .chain(&COARSE)
-        .chain(words)
-        .copied()
-        .collect();
-    lahar(folder, &words)
-}
-
-fn here() -> TempDir {
-    tempfile::tempdir().expect("a temporary folder")
-}
-
-#[track_caller]
-fn code(output: &Output, expected: i32) {
-    assert_eq!(
-        output.status.code(),
-        Some(expected),
-        "{}\n{}",
-        String::from_utf8_lossy(&output.stdout),
-        String::from_utf8_lossy(&output.stderr)
-    );
-}
-
-#[track_caller]
-fn json(output: &Output) -> Value {
-    serde_json::from_slice(&output.stdout).expect("standard output is one JSON document")
-}
-
-fn errors(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = std::fs::read_dir(folder)
-        .expect("a folder")
-        .map(|entry| {
-            entry
-                .expect("an entry")
-                .file_name()
-                .to_string_lossy()
-                .into_owned()
-        })
-        .collect();
-    names.sort();
-    names
-}
+use crate::support::{code, errors, here, json, lahar, names, program, record, run};
 
 #[test]
-fn a_run_leaves_what_was_asked_for() {
+fn a_run_writes_what_was_asked_for() {
     let here = here();
     let words = ["--frames=3", "--format=npz,png,gif", "-o", "r"];
     let output = run(here.path(), &words);
@@ -142,7 +76,7 @@ fn json_is_one_document_and_nothing_else() {
 }
 
 #[test]
-fn taken_folders_are_numbered_refused_or_replaced() {
+fn folders_in_use_are_numbered_refused_or_replaced() {
     let here = here();
     for _ in 0..2 {
         code(&run(here.path(), &["--frames=1", "--format=none"]), 0);
@@ -183,7 +117,7 @@ fn wrong_commands_and_scenes_are_code_2() {
         assert!(output.stdout.is_empty(), "{words:?}");
         assert!(!output.stderr.is_empty(), "{words:?}");
     }
-    assert_eq!(names(here.path()), ["broken.toml"], "nothing was made");
+    assert_eq!(names(here.path()), ["broken.toml"], "nothing was written");
     let shown = errors(&lahar(here.path(), &["run", "broken.toml"]));
     assert!(shown.contains("broken.toml:2:6"), "{shown}");
 }
@@ -233,7 +167,7 @@ fn a_new_scene_runs_and_is_never_overwritten() {
     code(&lahar(here.path(), &["new", "."]), 2);
 }
 
-/// One clear error, exit code 2 and no panic, whatever the file is.
+/// Any broken file gives one clear error, exit code 2 and no panic.
 #[test]
 fn broken_scenes_are_code_2() {
     let here = here();
@@ -294,73 +228,6 @@ fn broken_scenes_are_code_2() {
 }
 
 #[test]
-fn values_are_compared_side_by_side_and_plotted() {
-    let here = here();
-    let words = [
-        "run",
-        "spinning-jelly",
-        "--frames=3",
-        "--compare=transfer=pic,apic",
-    ];
-    code(&lahar(here.path(), &words), 0);
-    let whole = here.path().join("out/spinning-jelly-compared");
-    let own = names(&whole);
-    for name in ["apic", "pic", "images", "plots", "video.gif"] {
-        assert!(own.iter().any(|n| n == name), "{name} is not in {own:?}");
-    }
-    let record = |run: &str| {
-        let text = std::fs::read_to_string(whole.join(run).join("run.json")).unwrap();
-        serde_json::from_str::<Value>(&text).unwrap()
-    };
-    assert_eq!(record("pic")["scene"]["transfer"], "pic");
-    assert_eq!(record("apic")["scene"]["transfer"], "apic");
-    let picture = |path: &str| lahar_io::image::Picture::load_png(whole.join(path)).unwrap();
-    let (one, both) = (
-        picture("pic/images/000003.png"),
-        picture("images/000003.png"),
-    );
-    assert!(both.width > 2 * one.width && both.height > one.height);
-    let plot = std::fs::read_to_string(whole.join("plots/angular-momentum.svg")).unwrap();
-    assert!(plot.contains("transfer = pic") && plot.contains("transfer = apic"));
-
-    // Wrong before anything is run.
-    let wrong = ["run", "spinning-jelly", "--compare=transfer=pic,apix"];
-    let output = lahar(here.path(), &wrong);
-    code(&output, 2);
-    assert!(errors(&output).contains("apix"), "{}", errors(&output));
-    assert_eq!(names(&here.path().join("out")).len(), 1);
-}
-
-#[test]
-fn plots_of_one_run_and_of_several() {
-    let here = here();
-    for transfer in ["pic", "apic"] {
-        let set = format!("--set=transfer={transfer}");
-        let words = ["run", "spinning-jelly", "--frames=2", "--format=none", &set];
-        code(
-            &lahar(here.path(), &[&words[..], &["-o", transfer]].concat()),
-            0,
-        );
-    }
-    code(&lahar(here.path(), &["plot", "pic"]), 0);
-    assert!(here.path().join("pic/plots/energy.svg").is_file());
-    code(
-        &lahar(here.path(), &["plot", "pic", "apic", "-o", "both"]),
-        0,
-    );
-    let plot = std::fs::read_to_string(here.path().join("both/energy.svg")).unwrap();
-    assert!(plot.contains(">\npic") || plot.contains("pic\n"), "{plot}");
-    code(&lahar(here.path(), &["plot", "pic", "apic"]), 2);
-    let output = lahar(here.path(), &["plot", "nowhere"]);
-    code(&output, 2);
-    assert!(
-        errors(&output).contains("diagnostics.csv"),
-        "{}",
-        errors(&output)
-    );
-}
-
-#[test]
 fn the_same_run_gives_the_same_files() {
     let here = here();
     for (folder, threads) in [("a", "--threads=1"), ("b", "--threads=3")] {
@@ -412,8 +279,7 @@ fn ctrl_c_ends_after_the_frame_with_130_and_whole_files() {
     use std::process::Stdio;
 
     let here = here();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_lahar"))
-        .current_dir(here.path())
+    let mut child = program(here.path())
         .args([
             "run",
             "dam-break",
@@ -428,7 +294,7 @@ fn ctrl_c_ends_after_the_frame_with_130_and_whole_files() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // The first line says that it has begun.
+    // The first line says that the run has begun.
     let mut line = String::new();
     let mut stderr = BufReader::new(child.stderr.take().unwrap());
     stderr.read_line(&mut line).unwrap();
@@ -481,7 +347,7 @@ fn probes_are_written_and_plotted_and_change_nothing() {
         text("without/diagnostics.csv")
     );
     let pressure = text("with/probes/P1.csv");
-    // 3 frames of 1/60 s at 500 readings a second, and the one at the start.
+    // 3 frames of 1/60 s at 500 readings per second, and the reading at the start.
     assert_eq!(pressure.lines().count(), 1 + 1 + 25, "{pressure}");
     assert!(pressure.starts_with("time,pressure\n0.0,"));
     assert_eq!(text("with/probes/front.csv").lines().count(), 1 + 4);
@@ -490,49 +356,7 @@ fn probes_are_written_and_plotted_and_change_nothing() {
     assert!(text("with/plots/probe-P1.svg").contains("pressure [Pa]"));
 }
 
-#[test]
-fn validate_prints_a_table_or_json_and_leaves_a_report() {
-    let here = here();
-    let output = lahar(
-        here.path(),
-        &["validate", "k1", "E1", "--quick", "--json", "-o", "v"],
-    );
-    code(&output, 0);
-    let findings = json(&output);
-    let periods: Vec<&Value> = (findings.as_array().expect("a list").iter())
-        .filter(|finding| finding["case"] == "E1")
-        .collect();
-    assert_eq!(periods.len(), 1, "{findings}");
-    assert_eq!(periods[0]["reference"], 10.0);
-    assert_eq!(periods[0]["pass"], true);
-    let report = std::fs::read_to_string(here.path().join("v/validation.md")).expect("a report");
-    assert!(report.contains("## E1: ") && report.contains("images/validation/e1-speed.svg"));
-    assert!(
-        here.path()
-            .join("v/images/validation/e1-speed.svg")
-            .exists()
-    );
-    // A bar that is far too soft misses: exit code 1.
-    let soft = [
-        "validate",
-        "E1",
-        "--quick",
-        "--set",
-        "materials.bar.youngs_modulus=50.0",
-    ];
-    let output = lahar(here.path(), &soft);
-    code(&output, 1);
-    assert!(String::from_utf8_lossy(&output.stdout).contains("MISS"));
-    let output = lahar(here.path(), &["validate", "Z1"]);
-    code(&output, 2);
-    assert!(errors(&output).contains("there is no case \"Z1\""));
-}
-
-fn record(folder: &Path) -> Value {
-    serde_json::from_slice(&std::fs::read(folder.join("run.json")).unwrap()).unwrap()
-}
-
-/// Jelly with a step that is twice as long as it stands, coarse.
+/// A coarse scene of jelly with twice the longest stable time step.
 const TOO_LONG: [&str; 8] = [
     "run",
     "jelly-drop",
@@ -545,18 +369,18 @@ const TOO_LONG: [&str; 8] = [
 ];
 
 #[test]
-fn a_frame_that_fails_is_tried_again_with_a_shorter_step_and_recorded() {
+fn a_frame_that_fails_is_retried_with_a_shorter_step_and_recorded() {
     let here = here();
     let words = [TOO_LONG.as_slice(), &["--set=frame_rate=2.0"]].concat();
     let output = lahar(here.path(), &words);
     code(&output, 0);
-    let said = errors(&output);
+    let message = errors(&output);
     for words in [
         "with 1/2 of the time step",
         "limited by fixed",
         "the scene fixes dt",
     ] {
-        assert!(said.contains(words), "{said}");
+        assert!(message.contains(words), "{message}");
     }
     let record = record(&here.path().join("out"));
     let retries = record["retries"].as_array().expect("a list");
@@ -564,7 +388,7 @@ fn a_frame_that_fails_is_tried_again_with_a_shorter_step_and_recorded() {
     assert!(
         retries
             .iter()
-            .all(|retry| said.contains(retry.as_str().expect("text")))
+            .all(|retry| message.contains(retry.as_str().expect("text")))
     );
     assert_eq!(
         (&record["status"], &record["frames"]),
@@ -577,19 +401,19 @@ fn a_frame_that_fails_is_tried_again_with_a_shorter_step_and_recorded() {
 }
 
 #[test]
-fn a_run_that_cannot_be_helped_keeps_the_frames_before() {
+fn a_run_that_fails_for_good_keeps_the_frames_before() {
     let here = here();
     let words = [TOO_LONG.as_slice(), &["--set=frame_rate=60.0"]].concat();
     let output = lahar(here.path(), &words);
     code(&output, 1);
-    let said = errors(&output);
+    let message = errors(&output);
     for words in [
         "material \"",
         "substep",
         "down to 1/64 of the time step",
         "limited by retry",
     ] {
-        assert!(said.contains(words), "{said}");
+        assert!(message.contains(words), "{message}");
     }
     let record = record(&here.path().join("out"));
     assert_eq!(record["status"], "failed");
@@ -616,7 +440,7 @@ fn a_run_that_cannot_be_helped_keeps_the_frames_before() {
 }
 
 #[test]
-fn phases_and_start_up_make_up_the_time() {
+fn phases_and_startup_add_up_to_the_time() {
     let here = here();
     let output = run(
         here.path(),
@@ -636,293 +460,9 @@ fn phases_and_start_up_make_up_the_time() {
         (number("startup_seconds") + all - whole).abs() < 0.02 * whole + 0.01,
         "{record}"
     );
-    // The rate is over all phases but output.
+    // The rate leaves out the time of output.
     let solving = all - phases["output"].as_f64().unwrap();
     let rate = number("particle_steps") / solving;
     assert!((number("particle_steps_per_second") / rate - 1.0).abs() < 1e-9);
     assert!(phases["volume"].as_f64().unwrap() > 0.0);
-}
-
-#[test]
-fn bench_measures_compares_and_draws() {
-    let here = here();
-    let small = [
-        "bench",
-        "--case=dam-2d,jelly-3d",
-        "--particles=3000",
-        "--threads=1,2",
-        "--runs=2",
-    ];
-    let words: Vec<&str> = small.iter().chain(&["--json"]).copied().collect();
-    let output = lahar(here.path(), &words);
-    code(&output, 0);
-    let report = json(&output);
-    let results = report["results"].as_array().unwrap();
-    let cases: Vec<&str> = results
-        .iter()
-        .map(|m| m["case"].as_str().unwrap())
-        .collect();
-    assert_eq!(cases, ["dam-2d", "dam-2d", "jelly-3d", "jelly-3d"]);
-    for measured in results {
-        let number = |key: &str| measured[key].as_f64().unwrap();
-        assert!(
-            0.0 < number("min") && number("min") <= number("median"),
-            "{measured}"
-        );
-        assert!(
-            number("median") <= number("max") && number("sorts") >= 2.0,
-            "{measured}"
-        );
-        assert!(
-            (number("particles") / 3000.0 - 1.0).abs() < 0.1,
-            "{measured}"
-        );
-    }
-    std::fs::write(here.path().join("before.json"), &output.stdout).unwrap();
-    let words: Vec<&str> = small
-        .iter()
-        .chain(&["--compare=before.json"])
-        .copied()
-        .collect();
-    let output = lahar(here.path(), &words);
-    code(&output, 0);
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(text.contains("to baseline"), "{text}");
-    assert_eq!(
-        text.lines().filter(|line| line.contains("dam-2d")).count(),
-        2,
-        "{text}"
-    );
-
-    let words = [
-        "bench",
-        "--case=dam-2d",
-        "--growth=1000,4000",
-        "--threads=1,2",
-        "--runs=1",
-        "-o",
-        "plots",
-    ];
-    code(&lahar(here.path(), &words), 0);
-    assert!(
-        names(&here.path().join("plots"))
-            .iter()
-            .any(|name| name == "threads.svg")
-    );
-}
-
-#[test]
-fn bench_says_what_is_wrong() {
-    let here = here();
-    let output = lahar(here.path(), &["bench", "--case=dam"]);
-    code(&output, 2);
-    assert!(
-        errors(&output).contains("no case \"dam\"; there are dam-3d,"),
-        "{}",
-        errors(&output)
-    );
-    std::fs::write(here.path().join("no.json"), "{}").unwrap();
-    let output = lahar(here.path(), &["bench", "--compare=no.json"]);
-    code(&output, 2);
-    assert!(
-        errors(&output).contains("no.json: it is not what"),
-        "{}",
-        errors(&output)
-    );
-}
-
-#[test]
-fn a_finished_run_is_drawn_and_told_of() {
-    let here = here();
-    code(
-        &run(here.path(), &["--frames=3", "--format=npz", "-o", "r"]),
-        0,
-    );
-    let words = ["render", "r", "--frames=1..3:2", "--video", "--size=64x48"];
-    let output = lahar(here.path(), &words);
-    code(&output, 0);
-    assert!(errors(&output).contains("video: GIF by lahar"));
-    let drawn = names(&here.path().join("r/render"));
-    assert_eq!(drawn[..3], ["000001.png", "000003.png", "video.gif"]);
-
-    assert!(errors(&output).contains("pictures by"));
-
-    code(&lahar(here.path(), &["report", "r"]), 0);
-    let page = std::fs::read_to_string(here.path().join("r/report.html")).unwrap();
-    for part in [
-        "<h1>Dam break</h1>",
-        "data:image/png;base64,",
-        "data:image/gif;base64,",
-        "<svg",
-        "particle-steps/s",
-        "Retries",
-    ] {
-        assert!(page.contains(part), "{part}");
-    }
-    // Nothing is fetched: the only addresses are names of XML's dialects.
-    assert!(!page.contains("href=") && !page.contains("src=\"http"));
-
-    for (words, what) in [
-        (&["render", "r", "--frames=7"][..], "0 to 3"),
-        (&["render", "r", "--color-by=smell"], "color_by"),
-        (&["render", "nowhere"], "not a run's folder"),
-        (&["report", "nowhere"], "not a run's folder"),
-    ] {
-        let output = lahar(here.path(), words);
-        code(&output, 2);
-        assert!(errors(&output).contains(what), "{}", errors(&output));
-    }
-    code(
-        &run(here.path(), &["--frames=1", "--format=none", "-o", "bare"]),
-        0,
-    );
-    let output = lahar(here.path(), &["render", "bare"]);
-    code(&output, 2);
-    assert!(errors(&output).contains("--format npz"));
-    // There is still something to tell.
-    code(&lahar(here.path(), &["report", "bare"]), 0);
-}
-
-/// A run is drawn by the window's renderer where there is an adapter, and by the processor where there is none: the same
-/// water in the same place, on pictures of one size.
-#[test]
-fn the_window_s_renderer_and_the_processor_draw_the_same_water() {
-    /// A backend that this system has not got.
-    const NONE: &str = if cfg!(target_os = "macos") {
-        "dx12"
-    } else {
-        "metal"
-    };
-    let here = here();
-    // In 3D each has its own idea of how much air is around a scene.
-    let camera = [
-        "--camera=1,0.5,2",
-        "--set=camera.center=[0.8,0.5,0.3]",
-        "--set=camera.height=2",
-        "--set=camera.field_of_view=40",
-    ];
-    for (name, scene, camera) in [
-        ("flat", "dam-break", &[][..]),
-        ("solid", "dam-break-3d", &camera),
-    ] {
-        let coarse = [
-            "run",
-            scene,
-            "--set",
-            "dx=0.1",
-            "--frames=1",
-            "--format=npz",
-        ];
-        code(
-            &lahar(here.path(), &[&coarse[..], &["-o", name]].concat()),
-            0,
-        );
-        let draw = |renderer: &str, words: &[&str], backend: Option<&str>| {
-            let mut command = program(here.path());
-            command.args(["render", name, "--frames=1", "--size=96x64", "-o", renderer]);
-            command
-                .args(["--renderer", renderer])
-                .args(camera)
-                .args(words);
-            command.envs(backend.map(|backend| ("WGPU_BACKEND", backend)));
-            let output = command.output().unwrap();
-            let path = here.path().join(renderer).join("000001.png");
-            (output, lahar_io::image::Picture::load_png(path))
-        };
-
-        let (output, picture) = draw("cpu", &[], None);
-        code(&output, 0);
-        assert!(errors(&output).contains("pictures by the processor\n"));
-        let by_processor = picture.unwrap();
-
-        let (output, _) = draw("gpu", &[], Some(NONE));
-        code(&output, 1);
-        assert!(
-            errors(&output).contains("--renderer gpu: "),
-            "{}",
-            errors(&output)
-        );
-        let (output, picture) = draw("auto", &[], Some(NONE));
-        code(&output, 0);
-        assert!(errors(&output).contains("pictures by the processor: "));
-        assert_eq!(picture.unwrap(), by_processor);
-
-        let (output, picture) = draw("auto", &[], None);
-        code(&output, 0);
-        if !errors(&output).contains("pictures by the window's renderer on ") {
-            continue;
-        }
-        let by_window = picture.unwrap();
-        let size = |picture: &lahar_io::image::Picture| (picture.width, picture.height);
-        assert_eq!(size(&by_window), size(&by_processor));
-        let water = |picture: &lahar_io::image::Picture| {
-            let (mut count, mut sums) = (0.0, [0.0; 2]);
-            for (at, pixel) in picture.rgb.as_chunks::<3>().0.iter().enumerate() {
-                // Bluer than the background and the lines.
-                if pixel[2].saturating_sub(pixel[0]) > 0x40 {
-                    let (row, column) = (at / picture.width as usize, at % picture.width as usize);
-                    count += 1.0;
-                    sums[0] += column as f64;
-                    sums[1] += row as f64;
-                }
-            }
-            (count, sums.map(|sum| sum / count))
-        };
-        let ((area, [x, y]), (window_area, [window_x, window_y])) =
-            (water(&by_processor), water(&by_window));
-        let ratio = window_area / area;
-        assert!(
-            (0.85..1.2).contains(&ratio),
-            "{scene}: {window_area} {area}"
-        );
-        assert!(
-            (x - window_x).abs() < 1.5 && (y - window_y).abs() < 1.5,
-            "{scene}"
-        );
-
-        // Colours by body and by number, none of them the material's.
-        for by in ["body", "speed"] {
-            let (output, picture) = draw("auto", &["--color-by", by], None);
-            code(&output, 0);
-            assert_ne!(picture.unwrap(), by_window, "{by}");
-        }
-    }
-}
-
-#[cfg(feature = "mesh")]
-#[test]
-fn surfaces_are_a_folder_a_material() {
-    let here = here();
-    let words = ["run", "dam-break-3d", "--set", "dx=0.1", "--threads=1"];
-    let more = ["--frames=1", "--format=npz", "-o", "r"];
-    code(&lahar(here.path(), &[&words[..], &more].concat()), 0);
-    let words = ["mesh", "r", "--format=ply,obj,vtk"];
-    code(&lahar(here.path(), &words), 0);
-    let meshes = here.path().join("r/meshes");
-    assert_eq!(names(&meshes), ["water", "water.pvd"]);
-    assert_eq!(
-        names(&meshes.join("water")),
-        [
-            "000000.obj",
-            "000000.ply",
-            "000000.vtp",
-            "000001.obj",
-            "000001.ply",
-            "000001.vtp"
-        ]
-    );
-    code(
-        &run(here.path(), &["--frames=0", "--format=npz", "-o", "flat"]),
-        0,
-    );
-    for (words, what) in [
-        (&["mesh", "flat"][..], "2D"),
-        (&["mesh", "r", "--materials=wine"], "there are water"),
-        (&["mesh", "r", "--format=stl"], "ply, obj, vtk"),
-        (&["mesh", "r", "--cube=0"], "above 0"),
-    ] {
-        let output = lahar(here.path(), words);
-        code(&output, 2);
-        assert!(errors(&output).contains(what), "{}", errors(&output));
-    }
 }

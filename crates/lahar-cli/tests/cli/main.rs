@@ -1,5 +1,8 @@
-//! The program as its users start it. One program of tests, so that it is linked once.
+//! Tests of the program as its users start it, in one binary, so that it is linked once.
 
 mod commands;
+mod measure;
+mod pictures;
 mod resume;
+mod support;
 mod view;

@@ -1,4 +1,4 @@
-//! Runs that end before their time, and go on: what is left is to the byte what an unbroken run leaves.
+//! Runs that are interrupted and resumed: their files equal those of an unbroken run to the byte.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -9,7 +9,9 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// Water and jelly, gauges, a force by where particles started; a list of particles beside the scene.
+use crate::support::{code, errors, here, lahar, program};
+
+/// Water and jelly, probes, a force that depends on starting positions, and a list of particles beside the scene.
 const SCENE: &str = r#"
 duration = 0.2
 frame_rate = 60
@@ -47,8 +49,9 @@ picture_size = [96, 64]
 checkpoint_every = 3
 "#;
 
-fn here() -> TempDir {
-    let here = tempfile::tempdir().expect("a temporary folder");
+/// Makes a folder with the scene and its list of particles.
+fn with_scene() -> TempDir {
+    let here = here();
     fs::write(here.path().join("scene.toml"), SCENE).unwrap();
     let places = (0..100).map(|i| {
         (
@@ -61,27 +64,8 @@ fn here() -> TempDir {
     here
 }
 
-fn command(folder: &Path, words: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_lahar"));
-    command.current_dir(folder).args(words);
-    command
-}
-
-fn lahar(folder: &Path, words: &[&str]) -> Output {
-    command(folder, words).output().expect("the binary starts")
-}
-
-fn errors(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-#[track_caller]
-fn code(output: &Output, expected: i32) {
-    let what = errors(output);
-    assert_eq!(output.status.code(), Some(expected), "{what}");
-}
-
-/// Every file of a run but checkpoints/, by its path; run.json without what depends on the clock.
+/// Returns the files of a run by their paths: all but checkpoints/, and run.json without the entries that depend on the
+/// clock.
 fn files(run: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     fn walk(root: &Path, folder: &Path, into: &mut BTreeMap<PathBuf, Vec<u8>>) {
         for entry in fs::read_dir(folder).expect("a folder") {
@@ -100,7 +84,7 @@ fn files(run: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let record = all
         .remove(Path::new("run.json"))
         .expect("run.json is there");
-    let mut record: Value = serde_json::from_slice(&record).expect("run.json is whole");
+    let mut record: Value = serde_json::from_slice(&record).expect("run.json is valid");
     for clock in [
         "seconds",
         "startup_seconds",
@@ -139,7 +123,7 @@ fn checkpoints(run: &Path) -> Vec<PathBuf> {
     found
 }
 
-/// The unbroken run.
+/// Makes the unbroken run.
 fn whole(here: &Path) -> PathBuf {
     code(
         &lahar(here, &["run", "scene.toml", "-o", "whole", "--threads=1"]),
@@ -148,30 +132,34 @@ fn whole(here: &Path) -> PathBuf {
     here.join("whole")
 }
 
-/// Starts a run and waits until `wanted`; what is still going then.
-fn until(here: &Path, words: &[&str], wanted: impl Fn() -> bool) -> Child {
-    let mut child = command(here, words)
+/// Starts a run and waits until `reached` or its end; returns the process.
+fn until(here: &Path, words: &[&str], reached: impl Fn() -> bool) -> Child {
+    let mut child = program(here)
+        .args(words)
         .stderr(Stdio::null())
         .stdout(Stdio::null())
         .spawn()
         .expect("the binary starts");
     let end = Instant::now() + Duration::from_secs(120);
-    while !wanted() && child.try_wait().expect("a process").is_none() {
-        assert!(Instant::now() < end, "it never came to that");
+    while !reached() && child.try_wait().expect("a process").is_none() {
+        assert!(
+            Instant::now() < end,
+            "the run never reached the wanted state"
+        );
         std::thread::sleep(Duration::from_micros(200));
     }
     child
 }
 
 fn kill(mut child: Child) {
-    drop(child.kill()); // may have ended
+    drop(child.kill()); // an error if it has ended already
     child.wait().expect("a process");
 }
 
-/// Killed before and after its first checkpoint, while it writes, and again while it goes on.
+/// Runs are killed before and after their first checkpoint, while they write, and again after they have been resumed.
 #[test]
-fn a_killed_run_goes_on_as_if_it_had_not_been() {
-    let here = here();
+fn a_killed_run_is_resumed_to_the_same_files() {
+    let here = with_scene();
     let here = here.path();
     let whole = whole(here);
     let frame = |run: &str, n: u32| here.join(run).join(format!("frames/{n:06}.npz"));
@@ -190,7 +178,7 @@ fn a_killed_run_goes_on_as_if_it_had_not_been() {
     kill(until(here, &run("first", "1"), written("first", 1)));
     kill(until(here, &run("later", "2"), written("later", 7)));
     kill(until(here, &run("twice", "1"), written("twice", 4)));
-    // Nothing of the scene's own is needed any more.
+    // The scene's own files are not needed any more.
     for file in ["scene.toml", "jelly.csv"] {
         fs::remove_file(here.join(file)).unwrap();
     }
@@ -201,20 +189,21 @@ fn a_killed_run_goes_on_as_if_it_had_not_been() {
     }
     assert_eq!(checkpoints(&whole).len(), 2);
     assert!(!whole.join("checkpoints/film").exists());
-    // Done is done.
+    // A finished run stays finished.
     let output = lahar(here, &["resume", "later", "--json"]);
     code(&output, 0);
-    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(
-        (&said["status"], &said["frames"]),
+        (&report["status"], &report["frames"]),
         (&"done".into(), &13.into())
     );
 }
 
-/// What a run into `r` leaves that is sent SIGTERM after its third frame.
+/// Starts a run into the folder `r`, sends it SIGTERM after its third frame, and returns its output.
 #[cfg(unix)]
 fn terminated(here: &Path, words: &[&str]) -> Output {
-    let mut child = command(here, words)
+    let mut child = program(here)
+        .args(words)
         .stderr(Stdio::piped())
         .stdout(Stdio::null())
         .spawn()
@@ -224,7 +213,7 @@ fn terminated(here: &Path, words: &[&str]) -> Output {
         assert!(child.try_wait().unwrap().is_none() || third.exists());
         std::thread::sleep(Duration::from_millis(1));
     }
-    // It fails if the run is done.
+    // `kill` fails if the run is done.
     let _ = Command::new("kill")
         .args(["-TERM", &child.id().to_string()])
         .status()
@@ -232,11 +221,11 @@ fn terminated(here: &Path, words: &[&str]) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// SIGTERM, as Ctrl-C: soon, with a checkpoint and a line on how to go on.
+/// SIGTERM acts as Ctrl-C does: the run ends soon, with a checkpoint and a line on how to resume.
 #[cfg(unix)]
 #[test]
-fn an_interrupted_run_keeps_a_checkpoint_and_goes_on() {
-    let here = here();
+fn an_interrupted_run_keeps_a_checkpoint_and_is_resumed() {
+    let here = with_scene();
     let here = here.path();
     let whole = whole(here);
     let words = [
@@ -269,15 +258,15 @@ fn an_interrupted_run_keeps_a_checkpoint_and_goes_on() {
     assert!(errors(&output).contains("lahar resume") && errors(&output).contains("--overwrite"));
     code(&lahar(here, &["resume", "r"]), 0);
     let (mut one, mut other) = (files(&whole), files(&here.join("r")));
-    // Their scenes differ, by the key that was set.
+    // The scenes differ by the key that was set.
     one.remove(Path::new("run.json"));
     other.remove(Path::new("run.json"));
     assert!(one == other);
 }
 
 #[test]
-fn a_run_goes_on_beyond_its_end() {
-    let here = here();
+fn a_run_is_extended_beyond_its_end() {
+    let here = with_scene();
     let here = here.path();
     let whole = whole(here);
     let short = ["run", "scene.toml", "-o", "r", "--frames=5", "--format=npz"];
@@ -302,7 +291,7 @@ fn a_run_goes_on_beyond_its_end() {
     }
 }
 
-/// A run that was stopped after some frames and two checkpoints.
+/// Makes a run that was killed after some frames and two checkpoints.
 fn stopped(here: &Path, name: &str) -> PathBuf {
     let run = here.join(name);
     let words = ["run", "scene.toml", "-o", name, "--threads=1"];
@@ -312,30 +301,30 @@ fn stopped(here: &Path, name: &str) -> PathBuf {
 }
 
 #[test]
-fn damaged_files_are_told_and_passed_over() {
-    let here = here();
+fn damaged_files_are_reported_and_passed_over() {
+    let here = with_scene();
     let here = here.path();
     let whole = whole(here);
     let run = stopped(here, "r");
-    // The newest checkpoint is cut, a frame is gone, a partial file lies about.
+    // The newest checkpoint is cut short, a frame is missing, and a partial file is left over.
     let newest = checkpoints(&run).pop().unwrap();
     let bytes = fs::read(&newest).unwrap();
     fs::write(&newest, &bytes[..bytes.len() / 2]).unwrap();
     fs::write(run.join("frames/000099.npz.partial"), "half").unwrap();
-    let gone = run.join("frames/000001.npz");
-    let frame = fs::read(&gone).unwrap();
-    fs::remove_file(&gone).unwrap();
+    let missing = run.join("frames/000001.npz");
+    let frame = fs::read(&missing).unwrap();
+    fs::remove_file(&missing).unwrap();
     let output = lahar(here, &["resume", "r"]);
     code(&output, 0);
-    let said = errors(&output);
+    let message = errors(&output);
     assert!(
-        said.contains("cut short") && said.contains("frames/000001.npz"),
-        "{said}"
+        message.contains("cut short") && message.contains("frames/000001.npz"),
+        "{message}"
     );
-    fs::write(&gone, frame).unwrap();
+    fs::write(&missing, frame).unwrap();
     assert_same(&whole, &run);
 
-    // An altered byte in both, or an altered table: the run starts over.
+    // With an altered byte in both checkpoints, or an altered table, the run starts over.
     for damage in ["checkpoints", "diagnostics.csv"] {
         let run = stopped(here, damage);
         let damaged = match damage {
@@ -350,15 +339,15 @@ fn damaged_files_are_told_and_passed_over() {
         }
         let output = lahar(here, &["resume", damage]);
         code(&output, 0);
-        let said = errors(&output);
+        let message = errors(&output);
         assert!(
-            said.contains("altered") && said.contains("starts over"),
-            "{said}"
+            message.contains("altered") && message.contains("starts over"),
+            "{message}"
         );
         assert_same(&whole, &run);
     }
 
-    // Without what it began with there is nothing to go on from.
+    // Without the record of its start, a run cannot be resumed.
     fs::write(run.join("checkpoints/start.json"), "{").unwrap();
     let output = lahar(here, &["resume", "r"]);
     code(&output, 2);
@@ -370,14 +359,14 @@ fn damaged_files_are_told_and_passed_over() {
     for folder in ["nowhere", "."] {
         let output = lahar(here, &["resume", folder]);
         code(&output, 2);
-        let said = errors(&output);
-        assert!(said.contains("there is no"), "{said}");
+        let message = errors(&output);
+        assert!(message.contains("there is no"), "{message}");
     }
 }
 
 #[test]
 fn two_runs_do_not_share_a_folder() {
-    let here = here();
+    let here = with_scene();
     let here = here.path();
     let run = here.join("r");
     let words = [
@@ -395,8 +384,8 @@ fn two_runs_do_not_share_a_folder() {
     ] {
         let output = lahar(here, words);
         code(&output, 2);
-        let said = errors(&output);
-        assert!(said.contains("another run is writing"), "{said}");
+        let message = errors(&output);
+        assert!(message.contains("another run is writing"), "{message}");
     }
     kill(first);
     code(
@@ -408,17 +397,17 @@ fn two_runs_do_not_share_a_folder() {
     );
 }
 
-/// A disk that takes no more: an error that names the file, exit 1, and a checkpoint from which the run goes on
-/// when there is room. A limit on the size of files stands for the disk: the film outgrows it.
+/// A full disk gives an error that names the file, exit code 1, and a checkpoint from which the run can be resumed when
+/// there is space again. A limit on the size of files stands for the disk: the film outgrows it.
 #[cfg(unix)]
 #[test]
 fn a_full_disk_is_an_error_and_nothing_is_lost() {
-    let here = here();
+    let here = with_scene();
     let here = here.path();
     let words = "run scene.toml --threads=1 --format=npz,gif --set output.picture_size=[640,360]";
     let run = |limits: &str, folder: &str| {
         let lahar = env!("CARGO_BIN_EXE_lahar");
-        // The signal that comes with the limit stays ignored in what is executed.
+        // The program inherits that the limit's signal is ignored.
         let script = format!("trap '' XFSZ; {limits} exec '{lahar}' {words} -o {folder}");
         let output = Command::new("sh")
             .current_dir(here)
@@ -427,14 +416,17 @@ fn a_full_disk_is_an_error_and_nothing_is_lost() {
         output.expect("there is a shell")
     };
     code(&run("", "whole"), 0);
-    // In halves of a kilobyte.
+    // The unit is half a kilobyte.
     let output = run("ulimit -f 200;", "r");
     code(&output, 1);
-    let said = errors(&output);
-    assert!(said.contains("checkpoints/film: cannot write"), "{said}");
+    let message = errors(&output);
     assert!(
-        said.contains(".checkpoint") && said.contains("`lahar resume r`"),
-        "{said}"
+        message.contains("checkpoints/film: cannot write"),
+        "{message}"
+    );
+    assert!(
+        message.contains(".checkpoint") && message.contains("`lahar resume r`"),
+        "{message}"
     );
     assert!(!checkpoints(&here.join("r")).is_empty());
     let output = lahar(here, &["resume", "r"]);
@@ -447,11 +439,11 @@ fn a_full_disk_is_an_error_and_nothing_is_lost() {
     assert_same(&here.join("whole"), &here.join("r"));
 }
 
-/// Where nothing can be written, nothing is begun.
+/// A run does not begin in a place that cannot be written to.
 #[cfg(unix)]
 #[test]
 fn an_unwritable_place_is_named() {
-    let here = here();
+    let here = with_scene();
     let output = lahar(here.path(), &["run", "scene.toml", "-o", "/dev/null/r"]);
     code(&output, 1);
     assert!(

@@ -1,25 +1,10 @@
-//! `lahar view` where it cannot open a window: what is wrong is said before anything opens.
+//! `lahar view` without a display: errors are found before a window opens.
 
-use std::path::Path;
-use std::process::Command;
-
-/// The exit code and what was said on standard error, without a display.
-fn lahar(folder: &Path, words: &[&str]) -> (Option<i32>, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_lahar"))
-        .current_dir(folder)
-        .args(words)
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("WAYLAND_SOCKET")
-        .output()
-        .expect("the binary starts");
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    (output.status.code(), errors)
-}
+use crate::support::{code, errors, here, lahar};
 
 #[test]
-fn what_is_wrong_with_a_scene_or_a_comparison_is_exit_code_2() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+fn a_wrong_scene_or_comparison_is_exit_code_2() {
+    let here = here();
     for (words, expected) in [
         (&["view", "dam-brake"][..], "did you mean \"dam-break\"?"),
         (&["view", "dam-break", "--set", "dx=fine"], "dx"),
@@ -41,15 +26,16 @@ fn what_is_wrong_with_a_scene_or_a_comparison_is_exit_code_2() {
         ),
         (&["view", "."], "not a run's folder"),
     ] {
-        let (code, errors) = lahar(folder.path(), words);
-        assert_eq!(code, Some(2), "{words:?}: {errors}");
+        let output = lahar(here.path(), words);
+        code(&output, 2);
+        let errors = errors(&output);
         assert!(errors.contains(expected), "{words:?}: {errors}");
     }
 }
 
 #[test]
 fn a_run_can_be_replayed_but_not_changed() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
+    let here = here();
     let run = |format: &str, to: &str| {
         let words = [
             "run",
@@ -61,19 +47,20 @@ fn a_run_can_be_replayed_but_not_changed() {
             "-o",
             to,
         ];
-        lahar(folder.path(), &[&words[..], &["--format", format]].concat())
+        lahar(here.path(), &[&words[..], &["--format", format]].concat())
     };
-    assert_eq!(run("npz", "whole").0, Some(0));
-    assert_eq!(run("none", "empty").0, Some(0));
+    code(&run("npz", "whole"), 0);
+    code(&run("none", "empty"), 0);
 
-    // All is well but that there is no display.
+    // Only the display is missing here.
     for words in [
         &["view", "whole"][..],
         &["view", "whole/run.json"],
         &["view", "dam-break"],
     ] {
-        let (code, errors) = lahar(folder.path(), words);
-        assert_eq!(code, Some(1), "{words:?}: {errors}");
+        let output = lahar(here.path(), words);
+        code(&output, 1);
+        let errors = errors(&output);
         assert!(errors.contains("no window"), "{errors}");
         assert!(errors.contains("lahar run"), "{errors}");
     }
@@ -85,13 +72,15 @@ fn a_run_can_be_replayed_but_not_changed() {
             "finished run",
         ),
     ] {
-        let (code, errors) = lahar(folder.path(), words);
-        assert_eq!(code, Some(2), "{words:?}: {errors}");
+        let output = lahar(here.path(), words);
+        code(&output, 2);
+        let errors = errors(&output);
         assert!(errors.contains(expected), "{words:?}: {errors}");
     }
-    let frame = folder.path().join("whole/frames/000000.npz");
+    let frame = here.path().join("whole/frames/000000.npz");
     std::fs::write(frame, "cut").expect("written");
-    let (code, errors) = lahar(folder.path(), &["view", "whole"]);
-    assert_eq!(code, Some(2), "{errors}");
+    let output = lahar(here.path(), &["view", "whole"]);
+    code(&output, 2);
+    let errors = errors(&output);
     assert!(errors.contains("000000.npz"), "{errors}");
 }
