@@ -1,21 +1,6 @@
 //! From the name of an instruction set to code compiled for it.
 
-use crate::setup::Isa;
 use fearless_simd::Level;
-
-/// The level of `isa`, if this machine has it.
-pub(crate) fn level(isa: Isa) -> Option<Level> {
-    match isa {
-        Isa::Portable => Some(portable()),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Isa::Avx2 => Level::new().as_avx2().map(Level::Avx2),
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Isa::Avx512 => Level::new().as_avx512().map(Level::Avx512),
-        #[cfg(target_arch = "aarch64")]
-        Isa::Neon => Level::new().as_neon().map(Level::Neon),
-        _ => None,
-    }
-}
 
 /// What never fuses a multiply and an add: SSE2 where that is the baseline, else plain scalars.
 pub(crate) fn portable() -> Level {

@@ -66,13 +66,13 @@ pub(crate) struct NodeForces<T, const D: usize> {
     pub(crate) pointer: Option<NodePointer<D>>,
 }
 
-/// [`crate::simulation::Pointer`] in cells.
+/// [`crate::setup::Pointer`] in cells.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NodePointer<const D: usize> {
     pub(crate) centre: [f64; D],
     pub(crate) radius: f64,
     pub(crate) softening: f64,
-    pub(crate) action: crate::simulation::PointerAction,
+    pub(crate) action: crate::setup::PointerAction,
 }
 
 /// Blocks, tiles, and how they hang together.

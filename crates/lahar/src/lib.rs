@@ -1,5 +1,6 @@
 //! Fluids, jelly and snow by the Moving Least Squares Material Point Method, in 2D and 3D.
 
+mod array;
 pub mod boundary;
 mod dispatch;
 pub mod error;
@@ -15,6 +16,7 @@ pub mod particles;
 mod prefetch;
 pub mod reference;
 pub mod setup;
+pub mod simulate;
 pub mod simulation;
 mod state;
 mod step;
@@ -29,11 +31,12 @@ pub use forces::{AccelerationField, Force, Pull};
 pub use instance::Instance;
 pub use material::{Material, Model};
 pub use particles::{Data, Field, Snapshot};
-pub use setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
-pub use simulation::{
-    Advance, Command, Memory, PhaseTimes, Pointer, PointerAction, Simulate, Simulation,
+pub use setup::{
+    Command, Deformation, ForceForm, Gauge, Isa, Kernel, ParticleBatch, Plate, Pointer,
+    PointerAction, Probe, ProbeSample, ProbeSamples, Setup, TimeStep, Transfer,
 };
+pub use simulate::{Advance, Memory, PhaseTimes, Simulate};
+pub use simulation::Simulation;
 pub use state::checkpoint::{self, Checkpoint, CheckpointError};
 pub use state::diagnostics::{self, Diagnostics};
-pub use state::probe::{self, Gauge, Plate, Probe, ProbeSample, ProbeSamples};
 pub use state::retry::{Retry, frame};

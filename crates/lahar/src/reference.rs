@@ -28,8 +28,9 @@ use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
 use crate::material::rheology::shear_rate;
 use crate::material::{ConstitutiveModel, Model, Strain, VolumeCorrection, VolumeRule, for_model};
 use crate::math::{Matrix, Vector};
+use crate::setup::Pointer;
 use crate::setup::{Deformation, ForceForm, Kernel, ParticleBatch, Setup, Transfer};
-use crate::simulation::{CORRECTION_INTERVAL, Pointer};
+use crate::simulation::CORRECTION_INTERVAL;
 use std::collections::BTreeMap;
 
 /// A particle of the oracle.

@@ -9,7 +9,6 @@ use crate::boundary::pointer::Push;
 use crate::boundary::surface::put_out;
 use crate::boundary::walls::Walls;
 use crate::boundary::{BoundaryImpulse, Collider};
-use crate::dispatch;
 use crate::error::{DtLimit, Failure, SetupError};
 use crate::forces::{self, Force};
 use crate::grid::{Grid, NodeForces, NodePointer};
@@ -19,10 +18,14 @@ use crate::math::Vector;
 use crate::particles::{DRIFT_LIMIT, Escaped, Sorter, in_range};
 use crate::particles::{Field, Snapshot};
 use crate::particles::{Group, Layout, PerParticle, Run, block_edge, locate};
-use crate::setup::{Deformation, ForceForm, Isa, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
+use crate::setup::{
+    Command, Deformation, ForceForm, Isa, Kernel, ParticleBatch, Pointer, ProbeSamples, Setup,
+    TimeStep, Transfer,
+};
+use crate::simulate::{Advance, Memory, PhaseTimes, Simulate};
 use crate::state::checkpoint::{Checkpoint, CheckpointError};
 use crate::state::diagnostics::Diagnostics;
-use crate::state::probe::{self, ProbeSamples, Readings};
+use crate::state::probe::{self, Readings};
 use crate::state::retry::{Mark, Retry};
 use crate::state::time_step::StepControl;
 use crate::transfer::Scheme;
@@ -32,172 +35,6 @@ use core::borrow::Borrow;
 
 /// How far sound goes, in cells, between two corrections of the fluids' volumes.
 pub(crate) const CORRECTION_INTERVAL: f64 = 5.0;
-
-/// What can be told to a running simulation. Vectors have three components; 2D ignores the third.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Command {
-    /// Replaces gravity \[m/s²\].
-    Gravity([f64; 3]),
-    /// Sets or lifts the hand that stirs.
-    Pointer(Option<Pointer>),
-    /// Makes a fluid stiffer or softer: its speed of sound at rest is `speed` \[m/s\] from now on, and its
-    /// J changes so that pressures stay. Materials without a bulk modulus are left as they are.
-    SoundSpeed {
-        /// Index of the material.
-        material: usize,
-        /// Speed of sound at rest \[m/s\], positive.
-        speed: f64,
-    },
-}
-
-/// A hand in the scene: acts on what is near it, until it is lifted.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pointer {
-    /// Where it is \[m\].
-    pub position: [f64; 3],
-    /// How far it reaches \[m\].
-    pub radius: f64,
-    /// Attraction goes to zero within this length \[m\], where its direction means nothing.
-    pub softening: f64,
-    /// What it does.
-    pub action: PointerAction,
-}
-
-/// What a hand does to what is at the offset d from it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PointerAction {
-    /// Accelerates nodes towards the hand by this much times d/(|d| + softening) \[m/s²\]; negative:
-    /// away from it.
-    Attract(f64),
-    /// Drags along: node velocities near the hand are drawn to this velocity \[m/s\].
-    Drag([f64; 3]),
-    /// Accelerates each particle nearer than the radius away from the hand, by acceleration ×
-    /// (|d|/radius)^power; by the same everywhere if the radius is infinite. It acts where the
-    /// substep has moved the particle to, and moves it in the next.
-    Push {
-        /// At the radius \[m/s²\]; negative: towards the hand.
-        acceleration: f64,
-        /// How much weaker it is near the hand; 0: as strong anywhere within the radius.
-        power: f64,
-    },
-}
-
-/// What an advance did.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Advance {
-    /// Substeps taken.
-    pub substeps: u64,
-    /// The shortest of them \[s\].
-    pub dt_min: f64,
-    /// What limited it.
-    pub limit: DtLimit,
-}
-
-/// Seconds spent by phase, if a clock was given.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PhaseTimes {
-    /// Moving particles to their blocks.
-    pub sort: f64,
-    /// Setting volumes right by how full the grid is.
-    pub volume: f64,
-    /// Particles to grid.
-    pub scatter: f64,
-    /// Grid update.
-    pub grid: f64,
-    /// Grid to particles, the law's update included.
-    pub gather: f64,
-    /// Sorts done.
-    pub sorts: u64,
-}
-
-/// A simulation of any dimension and precision.
-pub trait Simulate: Send {
-    /// 2 or 3.
-    fn dimension(&self) -> usize;
-    /// "f32" or "f64".
-    fn precision(&self) -> &'static str;
-    /// The instruction set in use.
-    fn isa(&self) -> Isa;
-    /// Distance between nodes \[m\].
-    fn dx(&self) -> f64;
-    /// Corners of the domain \[m\]; `None`: unbounded.
-    fn domain(&self) -> Option<([f64; 3], [f64; 3])>;
-    /// Gravity now \[m/s²\].
-    fn gravity(&self) -> [f64; 3];
-    /// Names of the materials, by index.
-    fn materials(&self) -> Vec<String>;
-    /// Simulated time \[s\].
-    fn time(&self) -> f64;
-    /// Substeps since the start.
-    fn substeps(&self) -> u64;
-    /// Particles now.
-    fn particle_count(&self) -> usize;
-    /// Length that the next substep would have \[s\], and why.
-    fn next_dt(&self) -> (f64, DtLimit);
-    /// One substep. If the scene fixes its length and a frame is tried again with a part of it, as many
-    /// as make it.
-    fn substep(&mut self) -> Result<Advance, Failure>;
-    /// Substeps until `time` \[s\]: exactly with an automatic time step, to the nearest substep with
-    /// a fixed one.
-    fn advance_to(&mut self, time: f64) -> Result<Advance, Failure> {
-        self.advance_while(time, &mut || true)
-    }
-    /// [`Self::advance_to`], which ends early when `go_on`, asked before each substep, says no.
-    fn advance_while(
-        &mut self,
-        time: f64,
-        go_on: &mut dyn FnMut() -> bool,
-    ) -> Result<Advance, Failure>;
-    /// Takes effect at the next substep.
-    fn command(&mut self, command: Command);
-    /// Keeps a copy of the state, which [`Self::retry_frame`] goes back to. A time step that was shortened
-    /// before recovers by and by. [`crate::frame`] does both.
-    fn begin_frame(&mut self);
-    /// Goes back to where [`Self::begin_frame`] was called, to go on with half the time step of the last
-    /// attempt; commands given since stay. `None` if that was never called, or has been tried to 1/64.
-    fn retry_frame(&mut self, failure: &Failure) -> Option<Retry>;
-    /// Goes back to where [`Self::begin_frame`] was called, as if it had not been; false if it was not.
-    fn give_up_frame(&mut self) -> bool;
-    /// All that decides how it goes on, besides its setup; between frames.
-    fn checkpoint(&self) -> Checkpoint;
-    /// Goes on from `checkpoint`, which a simulation of the same setup has given: with the same bits as that
-    /// one.
-    ///
-    /// # Errors
-    /// It is not of such a simulation, or damaged; this one stays as it was.
-    fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError>;
-    /// A copy of `fields`, rows by ascending id.
-    fn snapshot(&self, fields: &[Field]) -> Snapshot;
-    /// Totals now. Sorts first if the next substep would: the run's bits do not change.
-    fn diagnostics(&mut self) -> Diagnostics;
-    /// What each wall and each collider has taken from the material since the start, in the order of
-    /// sides and colliders. The difference of two moments over the time between is the mean force.
-    fn boundary_impulses(&self) -> Vec<BoundaryImpulse>;
-    /// What probes have read since this was last asked, in the order of [`Setup::probes`]; the reading
-    /// at the start comes first.
-    fn take_probe_samples(&mut self) -> Vec<ProbeSamples>;
-    /// Gives the simulation a clock that returns seconds, for [`Simulate::phase_times`].
-    fn set_clock(&mut self, clock: fn() -> f64);
-    /// Seconds by phase since the clock was given.
-    fn phase_times(&self) -> PhaseTimes;
-    /// Blocks of nodes in use, and bytes held by grid and particles.
-    fn memory(&self) -> Memory;
-}
-
-/// What a simulation holds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Memory {
-    /// Blocks of nodes.
-    pub blocks: usize,
-    /// Nodes in them.
-    pub nodes: usize,
-    /// Bytes of grid and tiles.
-    pub grid_bytes: usize,
-    /// Bytes of particles, buffers included.
-    pub particle_bytes: usize,
-    /// Bytes of the copy that a frame that fails begins again from; 0 before the first frame.
-    pub retry_bytes: usize,
-}
 
 /// A simulation in `D` dimensions with numbers of type `T`.
 ///
@@ -290,7 +127,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     ) -> Result<Self, SetupError> {
         const { assert!(D == 2 || D == 3, "two or three dimensions") };
         let walls = check(&setup, laws.len())?;
-        let Some(level) = dispatch::level(setup.isa) else {
+        let Some(level) = setup.isa.level() else {
             return setup_error("isa", format!("this machine has no {}", setup.isa.name()));
         };
         let scheme = Scheme {

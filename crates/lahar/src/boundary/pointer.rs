@@ -2,7 +2,7 @@
 
 use crate::grid::NodePointer;
 use crate::math::{Real, Scalar, Vector};
-use crate::simulation::{Pointer, PointerAction};
+use crate::setup::{Pointer, PointerAction};
 
 impl<const D: usize> NodePointer<D> {
     /// `pointer` in cells; node 0 is at `origin` \[m\].

@@ -158,11 +158,11 @@ pub trait Scalar:
     /// Exact.
     fn to_f64(self) -> f64;
     /// As a column of a snapshot.
-    fn data(values: Vec<Self>) -> crate::particles::Data;
+    fn data(values: Vec<Self>) -> crate::array::Data;
     /// As an array of a checkpoint.
-    fn values(values: Vec<Self>) -> crate::state::checkpoint::Values;
+    fn values(values: Vec<Self>) -> crate::array::Values;
     /// From an array of a checkpoint, if it is of this type.
-    fn from_values(values: crate::state::checkpoint::Values) -> Option<Vec<Self>>;
+    fn from_values(values: crate::array::Values) -> Option<Vec<Self>>;
     /// e to the power self, the same bits on every machine.
     fn exp_scalar(self) -> Self;
     /// Natural logarithm, the same bits on every machine.
@@ -247,15 +247,15 @@ macro_rules! scalar {
             fn to_f64(self) -> f64 {
                 f64::from(self)
             }
-            fn data(values: Vec<Self>) -> crate::particles::Data {
-                crate::particles::Data::$variant(values)
+            fn data(values: Vec<Self>) -> crate::array::Data {
+                crate::array::Data::$variant(values)
             }
-            fn values(values: Vec<Self>) -> crate::state::checkpoint::Values {
-                crate::state::checkpoint::Values::$variant(values)
+            fn values(values: Vec<Self>) -> crate::array::Values {
+                crate::array::Values::$variant(values)
             }
-            fn from_values(values: crate::state::checkpoint::Values) -> Option<Vec<Self>> {
+            fn from_values(values: crate::array::Values) -> Option<Vec<Self>> {
                 match values {
-                    crate::state::checkpoint::Values::$variant(values) => Some(values),
+                    crate::array::Values::$variant(values) => Some(values),
                     _ => None,
                 }
             }

@@ -1,5 +1,7 @@
 //! Particles: the one table of their fields, storage, and snapshots for everything outside.
 
+pub use crate::array::Data;
+
 mod chunk;
 mod sort;
 mod store;
@@ -108,36 +110,6 @@ impl Field {
             .iter()
             .find(|info| info.field == self)
             .expect("every field is in the table")
-    }
-}
-
-/// The numbers of one field, particle after particle.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Data {
-    /// Single precision.
-    F32(Vec<f32>),
-    /// Double precision.
-    F64(Vec<f64>),
-    /// Whole numbers.
-    U32(Vec<u32>),
-}
-
-impl Data {
-    /// As `f64`, whatever they are.
-    pub fn to_f64(&self) -> Vec<f64> {
-        match self {
-            Self::F32(v) => v.iter().map(|&x| f64::from(x)).collect(),
-            Self::F64(v) => v.clone(),
-            Self::U32(v) => v.iter().map(|&x| f64::from(x)).collect(),
-        }
-    }
-    /// As `f32`, whatever they are.
-    pub fn to_f32(&self) -> Vec<f32> {
-        match self {
-            Self::F32(v) => v.clone(),
-            Self::F64(v) => v.iter().map(|&x| x as f32).collect(),
-            Self::U32(v) => v.iter().map(|&x| x as f32).collect(),
-        }
     }
 }
 

@@ -1,9 +1,18 @@
 //! What a simulation is made of, as plain data: checked once, by [`crate::Simulation::new`].
 
+mod command;
+mod isa;
+mod particle_batch;
+mod probe;
+
+pub use command::{Command, Pointer, PointerAction};
+pub use isa::Isa;
+pub use particle_batch::{Deformation, ParticleBatch};
+pub use probe::{Gauge, Plate, Probe, ProbeSample, ProbeSamples};
+
 use crate::boundary::{Collider, Corners, Cushion, Domain};
 use crate::forces::Force;
 use crate::material::Material;
-use crate::state::probe::Probe;
 
 /// Everything but the particles. SI units; in 2D per metre of depth.
 #[derive(Clone, Debug)]
@@ -121,84 +130,4 @@ impl Default for TimeStep {
             longest: f64::INFINITY,
         }
     }
-}
-
-/// Instruction sets. The same scene gives the same bits on one of them, and on
-/// [`Isa::Portable`] on every machine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Isa {
-    /// The compile target's baseline, without fused multiply-adds.
-    Portable,
-    /// AVX2 with FMA.
-    Avx2,
-    /// AVX-512 (Ice Lake and later).
-    Avx512,
-    /// AArch64's vectors.
-    Neon,
-}
-
-impl Isa {
-    /// The widest that this machine has.
-    pub fn detect() -> Self {
-        [Self::Avx512, Self::Avx2, Self::Neon]
-            .into_iter()
-            .find(|isa| isa.is_available())
-            .unwrap_or(Self::Portable)
-    }
-
-    /// Whether this machine can run it.
-    pub fn is_available(self) -> bool {
-        crate::dispatch::level(self).is_some()
-    }
-
-    /// As written in scenes and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Portable => "portable",
-            Self::Avx2 => "avx2",
-            Self::Avx512 => "avx512",
-            Self::Neon => "neon",
-        }
-    }
-
-    /// All of them, whether this machine has them or not.
-    pub const ALL: [Self; 4] = [Self::Portable, Self::Avx2, Self::Avx512, Self::Neon];
-}
-
-/// Particles to add, all of one material.
-#[derive(Clone, Debug, Default)]
-pub struct ParticleBatch<const D: usize> {
-    /// Index into [`Setup::materials`].
-    pub material: usize,
-    /// The body they belong to; free for the caller to number.
-    pub body: u32,
-    /// Positions \[m\], one a particle.
-    pub position: Vec<[f64; D]>,
-    /// Velocities \[m/s\]: none (at rest), one for all, or one a particle.
-    pub velocity: Vec<[f64; D]>,
-    /// Rest volumes \[m³; m² in 2D\]: one for all, or one a particle.
-    pub volume: Vec<f64>,
-    /// Whether the volumes are measured at the start: each particle's V⁰ becomes its volume as given
-    /// times the J of equation (7g), with the masses left as they are.
-    pub measure_volume: bool,
-    /// Masses \[kg\]: none (density × volume), one for all, or one a particle.
-    pub mass: Vec<f64>,
-    /// Affine matrices C \[1/s\], `c[i][j]` = ∂v_i/∂x_j: none (zero), or one a particle.
-    pub affine: Vec<[[f64; D]; D]>,
-    /// Deformation at the start.
-    pub deformation: Deformation<D>,
-    /// J_P of models with plastic flow: none (1), or one a particle. Other models do not read it.
-    pub plastic_jacobian: Vec<f64>,
-}
-
-/// How particles are deformed at the start.
-#[derive(Clone, Debug, Default)]
-pub enum Deformation<const D: usize> {
-    /// Not at all: F = I.
-    #[default]
-    Rest,
-    /// Swollen or compressed: J, one a particle; F = J^(1/D) I.
-    Jacobian(Vec<f64>),
-    /// Deformation gradients `f[i][j]`, one a particle.
-    Gradient(Vec<[[f64; D]; D]>),
 }

@@ -8,13 +8,16 @@
 //! kept. Reading believes nothing: an array that is missing, of another length, not finite or out of place is
 //! an error by its name.
 
+pub use crate::array::{Array, Values};
 use crate::boundary::impulse::Taken;
 use crate::instance::Instance;
 use crate::math::Vector;
 use crate::particles::{DRIFT_LIMIT, Escaped, in_range};
 use crate::particles::{Group, Layout, PerParticle, Run, block_edge};
-use crate::simulation::{Pointer, PointerAction, Simulation};
-use crate::state::probe::{ProbeSample, Readings};
+use crate::setup::ProbeSample;
+use crate::setup::{Pointer, PointerAction};
+use crate::simulation::Simulation;
+use crate::state::probe::Readings;
 use crate::state::{Rows, State};
 use crate::transfer::gather::MOST_CELLS;
 use core::fmt;
@@ -24,78 +27,6 @@ use core::fmt;
 pub struct Checkpoint {
     /// Every array once.
     pub arrays: Vec<Array>,
-}
-
-/// An array of a checkpoint.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Array {
-    /// What it is, like "materials.0.position.1" or "drift".
-    pub name: String,
-    /// Its lengths, the slowest axis first; none for a single number.
-    pub shape: Vec<usize>,
-    /// Its numbers.
-    pub values: Values,
-}
-
-/// Numbers of an array.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Values {
-    /// Single precision.
-    F32(Vec<f32>),
-    /// Double precision.
-    F64(Vec<f64>),
-    /// Whole numbers.
-    U32(Vec<u32>),
-    /// Whole numbers of either sign.
-    I32(Vec<i32>),
-    /// Large whole numbers.
-    U64(Vec<u64>),
-}
-
-impl Values {
-    /// How many there are.
-    pub fn len(&self) -> usize {
-        match self {
-            Self::F32(values) => values.len(),
-            Self::F64(values) => values.len(),
-            Self::U32(values) => values.len(),
-            Self::I32(values) => values.len(),
-            Self::U64(values) => values.len(),
-        }
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    fn f64s(self) -> Option<Vec<f64>> {
-        match self {
-            Self::F64(values) => Some(values),
-            _ => None,
-        }
-    }
-
-    fn u32s(self) -> Option<Vec<u32>> {
-        match self {
-            Self::U32(values) => Some(values),
-            _ => None,
-        }
-    }
-
-    fn i32s(self) -> Option<Vec<i32>> {
-        match self {
-            Self::I32(values) => Some(values),
-            _ => None,
-        }
-    }
-
-    fn u64s(self) -> Option<Vec<u64>> {
-        match self {
-            Self::U64(values) => Some(values),
-            _ => None,
-        }
-    }
 }
 
 /// A checkpoint that a simulation cannot go on from.

@@ -8,7 +8,7 @@
 
 pub mod checkpoint;
 pub mod diagnostics;
-pub mod probe;
+pub(crate) mod probe;
 pub(crate) mod retry;
 pub(crate) mod snapshot;
 pub(crate) mod time_step;
@@ -19,7 +19,8 @@ use crate::math::Lanes;
 use crate::parallel;
 use crate::particles::Escaped;
 use crate::particles::{Group, PerParticle, Run};
-use crate::simulation::{Pointer, Simulation};
+use crate::setup::Pointer;
+use crate::simulation::Simulation;
 use crate::state::probe::Readings;
 use crate::state::time_step::StepControl;
 

@@ -2,7 +2,9 @@
 
 use crate::error::Failure;
 use crate::instance::Instance;
-use crate::simulation::{Command, Simulate, Simulation};
+use crate::setup::Command;
+use crate::simulate::Simulate;
+use crate::simulation::Simulation;
 use crate::state::State;
 use core::fmt;
 

@@ -1,10 +1,10 @@
 //! What gauges read. In f64 and in the order of rows, so that bits do not depend on threads; only
 //! blocks that a gauge can see are looked at.
 
-use super::{Gauge, Plate};
 use crate::instance::Instance;
 use crate::kernel::{BSpline, Quadratic};
 use crate::particles::{Group, Layout, Run, block_edge};
+use crate::setup::{Gauge, Plate};
 use crate::simulation::Simulation;
 
 /// Cells that a particle may be out of its block between sorts.

@@ -1,7 +1,7 @@
 //! Pressure gauges in walls: they feel what the wall takes, as a sensor does.
 
-use super::{Gauge, Plate};
 use crate::instance::Instance;
+use crate::setup::{Gauge, Plate};
 use crate::simulation::Simulation;
 
 /// How far from a wall's plane a gauge may be to be in it \[cells\].
