@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 use lahar::Isa;
 use lahar_io::scene::Comparison;
 
-use crate::recorded::Frames;
+use crate::recorded_frames::Frames;
 
 /// Fluids, and the solids they meet, simulated by the Moving Least Squares Material Point Method.
 ///

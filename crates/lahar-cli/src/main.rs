@@ -5,6 +5,7 @@
 //! ```
 //! Only this crate prints: reports on standard output, everything else on standard error.
 
+mod appearance;
 mod args;
 mod bench;
 mod clock;
@@ -13,7 +14,6 @@ mod completions;
 mod error;
 mod interrupt;
 mod list;
-mod looks;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod new;
@@ -22,13 +22,13 @@ mod painter;
 mod plan;
 mod plot;
 mod progress;
-mod recorded;
+mod recorded_frames;
 mod render;
-mod report;
 mod resume;
 mod run;
 mod schema;
 mod show;
+mod summary;
 mod terminal;
 mod validate;
 mod window;

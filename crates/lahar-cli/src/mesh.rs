@@ -8,12 +8,12 @@ use lahar_io::output::{MeshFiles, Recording};
 use lahar_io::surface::{Style, Surface};
 
 use crate::error::{CliError, INTERRUPTED};
-use crate::recorded::{self, End};
+use crate::recorded_frames::{self, End};
 use crate::{args, terminal};
 
 /// Makes the meshes of `args.recorded.run`.
 pub(crate) fn mesh(args: &args::Mesh) -> Result<ExitCode, CliError> {
-    let recording = recorded::open(&args.recorded.run)?;
+    let recording = recorded_frames::open(&args.recorded.run)?;
     if recording.record().dimension != 3 {
         return Err(CliError::Usage(format!(
             "{} is a run in 2D; surfaces are made of runs in 3D",
@@ -32,7 +32,7 @@ pub(crate) fn mesh(args: &args::Mesh) -> Result<ExitCode, CliError> {
     };
     let names: Vec<&str> = materials.iter().map(|(_, name)| name.as_str()).collect();
     let mut files = MeshFiles::create(&folder, &names, &formats)?;
-    let end = recorded::each(&recording, args.recorded.frames, |number, snapshot| {
+    let end = recorded_frames::each(&recording, args.recorded.frames, |number, snapshot| {
         let mut triangles = 0;
         for (index, name) in &materials {
             let (positions, volume) = particles(snapshot, *index).map_err(CliError::Usage)?;

@@ -12,7 +12,7 @@ use lahar_io::output::{Record, Recording, Status, Table, read_record};
 
 use crate::error::CliError;
 use crate::progress::{duration, with_prefix};
-use crate::{args, looks, plot, recorded, terminal};
+use crate::{appearance, args, plot, recorded_frames, terminal};
 
 /// Films larger than this are named instead of shown \[bytes\].
 const LARGEST_FILM: u64 = 12 << 20;
@@ -29,7 +29,7 @@ pub(crate) fn report(args: &args::Report) -> Result<ExitCode, CliError> {
         true => args.run.parent().unwrap_or(Path::new("")),
         false => &args.run,
     };
-    let (_, record) = read_record(folder).map_err(recorded::unreadable)?;
+    let (_, record) = read_record(folder).map_err(recorded_frames::unreadable)?;
     let page = page(folder, &record)?;
     let path = match &args.output {
         Some(path) => path.clone(),
@@ -151,15 +151,17 @@ fn pictures(folder: &Path) -> String {
 }
 
 fn drawn(recording: &Recording) -> Result<Vec<String>, CliError> {
-    let scene = recorded::scene(recording, &[])?;
-    let first = recording.frame(0).map_err(recorded::unreadable)?;
-    let renderer = looks::renderer(&scene, &Scenery::recorded(&scene, &first), PICTURE);
+    let scene = recorded_frames::scene(recording, &[])?;
+    let first = recording.frame(0).map_err(recorded_frames::unreadable)?;
+    let renderer = appearance::renderer(&scene, &Scenery::recorded(&scene, &first), PICTURE);
     let last = recording.len() - 1;
     let mut indices: Vec<usize> = (0..PICTURES).map(|i| i * last / (PICTURES - 1)).collect();
     indices.dedup();
     let mut figures = Vec::new();
     for index in indices {
-        let snapshot = recording.frame(index).map_err(recorded::unreadable)?;
+        let snapshot = recording
+            .frame(index)
+            .map_err(recorded_frames::unreadable)?;
         let mut png = Vec::new();
         if renderer.render(&snapshot).write_png(&mut png).is_ok() {
             let words = format!("t = {:.3} s", snapshot.time);

@@ -7,7 +7,7 @@ use lahar_io::scene::Scene;
 
 use crate::args;
 use crate::error::CliError;
-use crate::{looks, terminal};
+use crate::{appearance, terminal};
 
 /// Draws frames of one run, all by the same view and colours.
 pub(crate) enum Painter {
@@ -65,7 +65,7 @@ impl Painter {
         let style = lahar_io::image::Style {
             width,
             height,
-            colouring: looks::colouring(subject.scene, &scenery),
+            colouring: appearance::colouring(subject.scene, &scenery),
             ..lahar_io::image::Style::default()
         };
         let painter = lahar_app::Painter::new(
@@ -100,5 +100,5 @@ impl Painter {
 
 fn by_processor(subject: &Subject) -> Renderer {
     let scenery = Scenery::recorded(subject.scene, subject.first);
-    looks::renderer(subject.scene, &scenery, subject.size)
+    appearance::renderer(subject.scene, &scenery, subject.size)
 }

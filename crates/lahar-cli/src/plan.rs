@@ -11,9 +11,9 @@ use lahar_io::scene::Scene;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
+use crate::appearance;
 use crate::args;
 use crate::error::CliError;
-use crate::looks;
 
 /// A run, checked.
 pub(crate) struct Plan {
@@ -249,7 +249,7 @@ impl Plan {
     pub(crate) fn pictures(&self, scenery: &Scenery) -> Option<Pictures> {
         let [width, height] = self.scene.output.picture_size;
         (self.outputs.formats.png > 0).then(|| Pictures {
-            renderer: looks::renderer(&self.scene, scenery, [width, height]),
+            renderer: appearance::renderer(&self.scene, scenery, [width, height]),
             every: self.outputs.formats.png,
         })
     }
@@ -257,10 +257,10 @@ impl Plan {
     /// A film, if wanted.
     pub(crate) fn film(&self, scenery: &Scenery) -> Option<Film> {
         self.outputs.formats.gif.then(|| Film {
-            renderer: looks::renderer(
+            renderer: appearance::renderer(
                 &self.scene,
                 scenery,
-                looks::film_size(self.scene.output.picture_size),
+                appearance::film_size(self.scene.output.picture_size),
             ),
             pace: film_pace(self.scene.frame_rate, self.outputs.film_frames),
         })

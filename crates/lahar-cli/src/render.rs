@@ -11,15 +11,15 @@ use lahar_io::scene::Scene;
 
 use crate::error::{CliError, INTERRUPTED};
 use crate::painter::{Painter, Subject};
-use crate::recorded::{self, End};
+use crate::recorded_frames::{self, End};
 use crate::{args, terminal};
 
 /// Draws the frames of `args.recorded.run`.
 pub(crate) fn render(args: &args::Render) -> Result<ExitCode, CliError> {
-    let recording = recorded::open(&args.recorded.run)?;
-    let scene = recorded::scene(&recording, &changes(args))?;
-    let chosen = recorded::chosen(&recording, args.recorded.frames)?;
-    let first = recording.frame(0).map_err(recorded::unreadable)?;
+    let recording = recorded_frames::open(&args.recorded.run)?;
+    let scene = recorded_frames::scene(&recording, &changes(args))?;
+    let chosen = recorded_frames::chosen(&recording, args.recorded.frames)?;
+    let first = recording.frame(0).map_err(recorded_frames::unreadable)?;
     let subject = Subject {
         recording: &recording,
         scene: &scene,
@@ -70,7 +70,7 @@ fn draw(
 ) -> Result<Drawn, CliError> {
     let mut films = args.video.then(|| Films::new(folder, rate));
     let mut failed = None;
-    let end = recorded::each(recording, args.recorded.frames, |number, snapshot| {
+    let end = recorded_frames::each(recording, args.recorded.frames, |number, snapshot| {
         let picture = painter.render(snapshot).map_err(|why| {
             failed = Some(format!("frame {number}: {why}"));
             CliError::Machine(why)

@@ -12,7 +12,8 @@ use lahar_io::output::{
 use crate::error::{CliError, INTERRUPTED};
 use crate::plan::Plan;
 use crate::progress::{Progress, Standing};
-use crate::{clock, interrupt, report, terminal};
+use crate::summary::{self, End};
+use crate::{clock, interrupt, terminal};
 
 /// What a run that goes on goes on from.
 pub(crate) struct Origin {
@@ -27,7 +28,7 @@ pub(crate) struct Origin {
 /// Runs `plan`; the report is one JSON document if `as_json`.
 pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
     if plan.dry_run {
-        return report::dry_run(&plan, as_json);
+        return summary::dry_run(&plan, as_json);
     }
     begin(plan, None, as_json)
 }
@@ -80,7 +81,7 @@ pub(crate) fn begin(
     simulation.set_clock(clock::seconds);
     let mut record = first_record(&plan, &*simulation, start.warnings.clone());
     record.write(&folder.record())?;
-    terminal::note(&report::announcement(
+    terminal::note(&summary::announcement(
         &plan,
         &record,
         &folder,
@@ -145,24 +146,13 @@ pub(crate) fn begin(
             if end == End::Done {
                 folder.forget_film_pictures()?;
             }
-            report::report(&plan, &record, &folder, end, written, as_json);
+            summary::print(&plan, &record, &folder, end, written, as_json);
             Ok(match end {
                 End::Interrupted => ExitCode::from(INTERRUPTED),
                 End::Done | End::Deadline => ExitCode::SUCCESS,
             })
         }
     }
-}
-
-/// Why the frames ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum End {
-    /// All are there.
-    Done,
-    /// Ctrl-C.
-    Interrupted,
-    /// There was no more time.
-    Deadline,
 }
 
 /// What to do about a step that was too long.

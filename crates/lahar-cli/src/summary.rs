@@ -9,8 +9,18 @@ use serde_json::{Value, json};
 use crate::error::CliError;
 use crate::plan::Plan;
 use crate::progress::{duration, with_prefix};
-use crate::run::End;
 use crate::{show, terminal};
+
+/// Why the frames ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    /// All are there.
+    Done,
+    /// Ctrl-C.
+    Interrupted,
+    /// There was no more time.
+    Deadline,
+}
 
 /// What is about to be run.
 pub(crate) fn announcement(
@@ -35,7 +45,7 @@ pub(crate) fn announcement(
 }
 
 /// What a run has come to.
-pub(crate) fn report(
+pub(crate) fn print(
     plan: &Plan,
     record: &Record,
     folder: &RunFolder,
