@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use lahar::Isa;
-use lahar_io::bench::{self, BenchError, Case, Machine, Options, Report};
+use lahar_lab::bench::{self, BenchError, Case, Machine, Options, Report};
 use serde_json::json;
 
 use crate::error::CliError;

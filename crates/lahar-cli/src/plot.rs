@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use lahar_io::output::Table;
-use lahar_io::plot::{Line, Plot};
+use lahar_lab::plot::{Line, Plot};
 
 use crate::error::CliError;
 use crate::{args, terminal};

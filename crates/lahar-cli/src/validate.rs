@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use lahar::Isa;
-use lahar_io::validate::{self, Case, Options, Outcome};
+use lahar_lab::validate::{self, Case, Options, Outcome};
 
 use crate::error::{CliError, FAILED};
 use crate::{args, clock, terminal};

@@ -1,7 +1,6 @@
 //! Everything between the lahar simulator and the disk: scenes and particles to start from, run folders, pictures.
 
 mod after_error;
-pub mod bench;
 pub mod builtin;
 pub mod checkpoint;
 pub mod error;
@@ -15,11 +14,9 @@ mod mesh_file;
 pub mod npz;
 pub mod output;
 pub mod particle_list;
-pub mod plot;
 mod ply;
 pub mod sampling;
 pub mod scene;
 pub mod shape;
 #[cfg(feature = "surface")]
 pub mod surface;
-pub mod validate;

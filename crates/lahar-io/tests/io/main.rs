@@ -8,5 +8,4 @@ mod lineage;
 mod scenes;
 mod shapes;
 mod tutorial;
-mod validation;
 mod water;

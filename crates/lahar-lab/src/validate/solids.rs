@@ -121,7 +121,7 @@ fn e2(session: &mut Session<'_>) -> Result<(), Stop> {
 
 fn e3(session: &mut Session<'_>) -> Result<(), Stop> {
     let reference = points(include_str!(
-        "../../scenes/validation/data/solid_cantilever_large_FEM.csv"
+        "../../data/solid_cantilever_large_FEM.csv"
     ));
     let deepest = |series: &Series| series.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
     let mut lines = vec![("finite elements".to_owned(), reference.clone())];
@@ -161,7 +161,7 @@ fn e3(session: &mut Session<'_>) -> Result<(), Stop> {
         return Ok(());
     }
     let elastica = table(include_str!(
-        "../../scenes/validation/data/solid_cantilever_selfweight_elastica.csv"
+        "../../data/solid_cantilever_selfweight_elastica.csv"
     ));
     let row = elastica[0]
         .iter()

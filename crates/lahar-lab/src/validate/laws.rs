@@ -96,14 +96,14 @@ fn solids<const D: usize>(session: &mut Session<'_>, text: &str) {
 fn k5(session: &mut Session<'_>) -> Result<(), Stop> {
     solids::<2>(
         session,
-        include_str!("../../scenes/validation/data/constitutive_reference_2d.csv"),
+        include_str!("../../data/constitutive_reference_2d.csv"),
     );
     solids::<3>(
         session,
-        include_str!("../../scenes/validation/data/constitutive_reference_3d.csv"),
+        include_str!("../../data/constitutive_reference_3d.csv"),
     );
     let table = Table::parse(include_str!(
-        "../../scenes/validation/data/eos_reference.csv"
+        "../../data/eos_reference.csv"
     ));
     let columns = [
         ("linear", Eos::Tait { gamma: 1.0 }),

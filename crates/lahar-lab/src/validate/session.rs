@@ -6,9 +6,9 @@ use std::rc::Rc;
 use lahar::{Data, Diagnostics, Failure, Field, ProbeSamples, Retry, Simulate};
 
 use super::{Case, Finding, Options, Outcome};
-use crate::error::SceneError;
+use lahar_io::error::SceneError;
 use crate::plot::{Line, Plot};
-use crate::scene::Scene;
+use lahar_io::scene::Scene;
 
 /// What ends a case early.
 pub(super) enum Stop {

@@ -5,7 +5,7 @@
 //!                                                       └──► plots of ours over the reference
 //! ```
 //! A case is an ordinary scene file (scenes/validation/) and a function that runs it and measures. Reference
-//! numbers that are not formulas are tables beside the scenes, each with its source in its first lines.
+//! numbers that are not formulas are tables in data/, each with its source in its first lines.
 
 mod dam_breaks;
 mod flows;
@@ -20,7 +20,7 @@ mod waves;
 
 use lahar::Isa;
 
-use crate::error::SceneError;
+use lahar_io::error::SceneError;
 use crate::plot::Plot;
 pub use report::{document, json, text};
 use session::{Session, Stop};

@@ -54,7 +54,7 @@ fn starts(
     column: usize,
 ) -> Result<(), Stop> {
     let reference = table(include_str!(
-        "../../scenes/validation/data/fluid_poiseuille_couette_startup.csv"
+        "../../data/fluid_poiseuille_couette_startup.csv"
     ));
     let mut lines = Vec::new();
     for cells in [20.0, 40.0] {
@@ -127,7 +127,7 @@ fn layers(x: &[f64], v: &[f64], step: f64) -> Series {
 
 fn f7(session: &mut Session<'_>) -> Result<(), Stop> {
     let reference = table(include_str!(
-        "../../scenes/validation/data/fluid_elliptic_drop_monaghan1994.csv"
+        "../../data/fluid_elliptic_drop_monaghan1994.csv"
     ));
     let exact: Series = reference[0]
         .iter()

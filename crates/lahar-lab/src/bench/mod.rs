@@ -14,8 +14,8 @@ mod report;
 use lahar::{Isa, PhaseTimes, Simulate};
 use serde::{Deserialize, Serialize};
 
-use crate::error::SceneError;
-use crate::scene::{Precision, Scene};
+use lahar_io::error::SceneError;
+use lahar_io::scene::{Precision, Scene};
 pub use machine::{Machine, seconds};
 pub use report::{Report, growth};
 

@@ -64,10 +64,10 @@ const SHIFT: f64 = 0.3; // the most that may be fitted, in the time unit of the 
 
 fn d1(session: &mut Session<'_>) -> Result<(), Stop> {
     let front = points(include_str!(
-        "../../scenes/validation/data/dambreak_martin_moyce_n2_2_front_table2.csv"
+        "../../data/dambreak_martin_moyce_n2_2_front_table2.csv"
     ));
     let height = points(include_str!(
-        "../../scenes/validation/data/dambreak_martin_moyce_n2_2_height_table6.csv"
+        "../../data/dambreak_martin_moyce_n2_2_height_table6.csv"
     ));
     let (a, g) = (0.05715, 9.81_f64);
     let mut fronts = vec![("experiment".to_owned(), front.clone())];
@@ -143,7 +143,7 @@ fn d1(session: &mut Session<'_>) -> Result<(), Stop> {
 
 fn d2(session: &mut Session<'_>) -> Result<(), Stop> {
     let front = points(include_str!(
-        "../../scenes/validation/data/dambreak_koshizuka_oka_1996_front.csv"
+        "../../data/dambreak_koshizuka_oka_1996_front.csv"
     ));
     let (l, g) = (0.146, 9.81_f64);
     let mut lines = vec![("experiment".to_owned(), front.clone())];
@@ -207,19 +207,19 @@ fn d3(session: &mut Session<'_>) -> Result<(), Stop> {
         (
             "P1",
             points(include_str!(
-                "../../scenes/validation/data/dambreak_lobovsky2014_H300_P1.csv"
+                "../../data/dambreak_lobovsky2014_H300_P1.csv"
             )),
         ),
         (
             "P3",
             points(include_str!(
-                "../../scenes/validation/data/dambreak_lobovsky2014_H300_P3.csv"
+                "../../data/dambreak_lobovsky2014_H300_P3.csv"
             )),
         ),
         (
             "P4",
             points(include_str!(
-                "../../scenes/validation/data/dambreak_lobovsky2014_H300_P4.csv"
+                "../../data/dambreak_lobovsky2014_H300_P4.csv"
             )),
         ),
     ];
@@ -274,25 +274,25 @@ fn d4(session: &mut Session<'_>) -> Result<(), Stop> {
         (
             "P1",
             points(include_str!(
-                "../../scenes/validation/data/dambreak_decourcy2024_sim_P1.csv"
+                "../../data/dambreak_decourcy2024_sim_P1.csv"
             )),
         ),
         (
             "P2",
             points(include_str!(
-                "../../scenes/validation/data/dambreak_decourcy2024_sim_P2.csv"
+                "../../data/dambreak_decourcy2024_sim_P2.csv"
             )),
         ),
         (
             "P3",
             points(include_str!(
-                "../../scenes/validation/data/dambreak_decourcy2024_sim_P3.csv"
+                "../../data/dambreak_decourcy2024_sim_P3.csv"
             )),
         ),
         (
             "P4",
             points(include_str!(
-                "../../scenes/validation/data/dambreak_decourcy2024_sim_P4.csv"
+                "../../data/dambreak_decourcy2024_sim_P4.csv"
             )),
         ),
     ];
@@ -325,7 +325,7 @@ fn d4(session: &mut Session<'_>) -> Result<(), Stop> {
 
 fn d5(session: &mut Session<'_>) -> Result<(), Stop> {
     let table = points(include_str!(
-        "../../scenes/validation/data/dambreak_buchner2002_pressure.csv"
+        "../../data/dambreak_buchner2002_pressure.csv"
     ));
     let mut plot = vec![("experiment".to_owned(), table.clone())];
     for (cells, gauges) in impacts(session, &["B"])? {
@@ -375,13 +375,13 @@ const GAUGED: [f64; 2] = [0.01, 0.6];
 fn d6(session: &mut Session<'_>) -> Result<(), Stop> {
     let force = since(
         &points(include_str!(
-            "../../scenes/validation/data/dambreak_yeh_petroff_force.csv"
+            "../../data/dambreak_yeh_petroff_force.csv"
         )),
         BORE[0],
     );
     // Its clock begins when the bore comes.
     let velocity = points(include_str!(
-        "../../scenes/validation/data/dambreak_yeh_petroff_velocity.csv"
+        "../../data/dambreak_yeh_petroff_velocity.csv"
     ));
     let impulse =
         |series: &[(f64, f64)]| mean(series, PASSAGE[0], PASSAGE[1]) * (PASSAGE[1] - PASSAGE[0]);

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 
 use lahar::Isa;
-use lahar_io::validate::{self, Options};
+use lahar_lab::validate::{self, Options};
 
 /// Cases that take seconds at their coarser resolution; the others wait for `lahar validate`.
 const FAST: [&str; 18] = [

@@ -1,0 +1,9 @@
+//! Measurements of the lahar simulator: physics cases against references, the speed of a machine, and plots of both.
+//!
+//! - [`validate`] runs scenes and compares numbers with exact solutions, experiments and other programs.
+//! - [`bench`] measures particle-steps per second.
+//! - [`plot`] draws curves as SVG.
+
+pub mod bench;
+pub mod plot;
+pub mod validate;
