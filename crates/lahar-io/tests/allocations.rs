@@ -1,4 +1,4 @@
-//! Formulas of a scene ask the system for no memory while it runs, once buffers have grown.
+//! Formulas of a scene allocate no memory while it runs, once buffers have grown.
 
 use lahar::Isa;
 use lahar_io::scene::Scene;
@@ -8,7 +8,7 @@ use std::alloc::System;
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Gravity, a force by place, and one by where particles started.
+/// A scene whose gravity varies in time and space, with a force by place and one by starting positions.
 const STIRRED: &str = r#"
 dx = 0.02
 gravity = ["0.3*sin(5*t)", "-9.81 - 0.1*y"]
@@ -50,7 +50,7 @@ fn formulas_allocate_nothing() {
         }
         assert!(
             simulation.phase_times().sorts > 2,
-            "it has not sorted twice"
+            "the particles were sorted too rarely"
         );
         assert!(unsorted > 200, "only {unsorted} substeps without a sort");
     });

@@ -1,9 +1,12 @@
-//! What users do to scenes and particle files, and what they are told: one error each, with its
-//! place and advice. The texts are kept in tests/io/snapshots (`cargo insta review` after a change).
+//! Errors in scenes and particle files: each gives one message with its place and advice.
+//!
+//! The messages are recorded in the folder snapshots (`cargo insta review` after a change).
 
+use crate::support::overrides;
 use lahar_io::error::SceneError;
 use lahar_io::scene::{Limits, Scene};
 use std::fmt::Write;
+use tempfile::TempDir;
 
 const GOOD: &str = r#"title = "Column"
 dx = 0.05
@@ -28,7 +31,13 @@ material = "water"
 shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }
 "#;
 
-/// (what was done, text replaced, by what).
+/// The shape of the good scene's body.
+const SHAPE: &str = "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }";
+
+/// The box of this shape.
+const BOX: &str = "box = { min = [0.0, 0.0], max = [0.5, 0.5] }";
+
+/// Faults of a scene: (name, text of the good scene, its replacement).
 const BROKEN: &[(&str, &str, &str)] = &[
     ("a typo in a key", "title =", "titel ="),
     (
@@ -209,7 +218,7 @@ const BROKEN: &[(&str, &str, &str)] = &[
         "[[forces]]\ndamping = 1.0\nacceleration = [1.0, 0.0]\n\n[domain]",
     ),
     (
-        "a force without a centre",
+        "a force without a center",
         "[domain]",
         "[[forces]]\ncentral = { acceleration = 1.0 }\n\n[domain]",
     ),
@@ -226,32 +235,20 @@ const BROKEN: &[(&str, &str, &str)] = &[
     ("a shape that is none", "{ box =", "{ bx ="),
     (
         "a cylinder in 2D",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "cylinder = { from = [0.0, 0.0], to = [0.5, 0.5], radius = 0.1 }",
     ),
-    (
-        "a mesh in 2D",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
-        "mesh = \"ball.stl\"",
-    ),
-    (
-        "an empty union",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
-        "union = []",
-    ),
-    (
-        "a union of numbers",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
-        "union = [1, 2]",
-    ),
+    ("a mesh in 2D", BOX, "mesh = \"ball.stl\""),
+    ("an empty union", BOX, "union = []"),
+    ("a union of numbers", BOX, "union = [1, 2]"),
     (
         "a typo in a part of a union",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "union = [{ ball = { center = [0.2, 0.2], radus = 0.1 } }]",
     ),
     (
         "a difference that leaves nothing",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "difference = [{ box = { min = [0.0, 0.0], max = [0.5, 0.5] } }, { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }]",
     ),
     (
@@ -266,57 +263,57 @@ const BROKEN: &[(&str, &str, &str)] = &[
     ),
     (
         "a scale of zero",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, scale = 0.0",
     ),
     (
         "a negative scale",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, scale = [1.0, -1.0]",
     ),
     (
         "about without a turn",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, about = [0.0, 0.0]",
     ),
     (
         "half a copy",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, copies = { count = [1.5, 1], step = [0.1, 0.1] }",
     ),
     (
         "copies in one place",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, copies = { count = [3, 1], step = [0.0, 0.1] }",
     ),
     (
         "a million copies",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, copies = { count = [1000, 1000], step = [0.001, 0.001] }",
     ),
     (
         "a turn as in 3D",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "box = { min = [0.0, 0.0], max = [0.5, 0.5] }, rotate = [0.0, 0.0, 30.0]",
     ),
     (
         "a negative radius",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "ball = { center = [0.2, 0.2], radius = -0.1 }",
     ),
     (
         "a polygon in a line",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "polygon = { points = [[0.0, 0.0], [0.5, 0.5], [0.2, 0.2]] }",
     ),
     (
         "a capsule without an end",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "capsule = { from = [0.0, 0.0], radius = 0.1 }",
     ),
     (
         "a normal without a direction",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "half_space = { point = [0.0, 0.2], normal = [0, 0] }",
     ),
     (
@@ -363,7 +360,7 @@ const BROKEN: &[(&str, &str, &str)] = &[
     ),
     (
         "a polygon that crosses itself",
-        "box = { min = [0.0, 0.0], max = [0.5, 0.5] }",
+        BOX,
         "polygon = { points = [[0.0, 0.0], [0.5, 0.5], [0.5, 0.0], [0.0, 0.5]] }",
     ),
     ("one bracket", "[[bodies]]", "[bodies]"),
@@ -430,7 +427,7 @@ const BROKEN: &[(&str, &str, &str)] = &[
     ),
     (
         "a thread across an empty domain",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "spacing = 3.0e-5\nshape = { capsule = { from = [0.0, 0.0], to = [2.0, 1.0], radius = 1.0e-4 } }",
     ),
     (
@@ -518,16 +515,16 @@ const BROKEN: &[(&str, &str, &str)] = &[
     ("no value", "dx = 0.05", "dx ="),
     (
         "a particle list that is not there",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "particles = \"nowhere.csv\"",
     ),
     (
         "a particle list of another kind",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "particles = \"start.xlsx\"",
     ),
     (
-        "an unknown colour",
+        "an unknown color",
         "density = 1000.0",
         "density = 1000.0\ncolor = \"blue\"",
     ),
@@ -538,52 +535,52 @@ const BROKEN: &[(&str, &str, &str)] = &[
     ),
     (
         "a collider without a shape",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nname = \"gate\"",
     ),
     (
         "a collider of a shape that is not possible",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { difference = [{ ball = { center = [1.0, 0.5], radius = 0.2 } }, { ball = { center = [1.0, 0.5], radius = 0.1 } }] }",
     ),
     (
         "a stretched collider",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 }, scale = [1.0, 2.0] }",
     ),
     (
         "a collider with a contact of walls only",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\ncontact = \"open\"",
     ),
     (
         "a sticky collider with friction",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\ncontact = \"sticky\"\nfriction = 0.2",
     ),
     (
         "a collider called like a side",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nname = \"left\"\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }",
     ),
     (
         "two colliders of one name",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nname = \"a\"\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\n\n[[colliders]]\nname = \"a\"\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }",
     ),
     (
         "a collider that moves twice",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\nspin = 1.0\nkeyframes = [{ time = 0.0 }]",
     ),
     (
         "keyframes in disorder",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\nkeyframes = [{ time = 1.0 }, { time = 0.5 }]",
     ),
     (
         "a typo in a keyframe",
-        "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
+        SHAPE,
         "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }\n\n[[colliders]]\nshape = { ball = { center = [1.0, 0.5], radius = 0.2 } }\nkeyframes = [{ time = 1.0, rotation = 20.0 }]",
     ),
 ];
@@ -592,7 +589,7 @@ const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\npr
 
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
-/// An .npz file with one array, whatever its header says.
+/// Returns an .npz file with one array, whose header may contradict its numbers.
 fn npz(descr: &str, shape: &str, numbers: &[u8]) -> Vec<u8> {
     let mut header = format!("{{'descr': '{descr}', 'fortran_order': False, 'shape': {shape}, }}");
     while (10 + header.len() + 1) % 64 != 0 {
@@ -610,15 +607,12 @@ fn npz(descr: &str, shape: &str, numbers: &[u8]) -> Vec<u8> {
     writer.finish().unwrap().into_inner()
 }
 
-fn failure(text: &str, overrides: &[(&str, &str)]) -> SceneError {
-    let overrides: Vec<(String, String)> = overrides
-        .iter()
-        .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
-        .collect();
-    match Scene::parse(text, "column.toml", &overrides) {
+/// Returns the error of a scene that must have one.
+fn failure(text: &str, pairs: &[(&str, &str)]) -> SceneError {
+    match Scene::parse(text, "column.toml", &overrides(pairs)) {
         Err(error) => error,
         Ok(scene) => panic!(
-            "this was taken for a scene: {text}\n{:?} {}",
+            "no error in this scene: {text}\n{:?} {}",
             scene.overrides,
             scene.summary()
         ),
@@ -629,11 +623,11 @@ fn failure(text: &str, overrides: &[(&str, &str)]) -> SceneError {
 fn broken_scenes() {
     Scene::parse(GOOD, "column.toml", &[]).unwrap();
     let mut all = String::new();
-    for (what, from, to) in BROKEN {
-        assert!(GOOD.contains(from), "{what}: {from}");
+    for (name, from, to) in BROKEN {
+        assert!(GOOD.contains(from), "{name}: {from}");
         let error = failure(&GOOD.replacen(from, to, 1), &[]);
-        assert!(error.line > 0, "{what} has no place: {error}");
-        writeln!(all, "# {what}\n{error}\n").unwrap();
+        assert!(error.line > 0, "{name} has no place: {error}");
+        writeln!(all, "# {name}\n{error}\n").unwrap();
     }
     insta::assert_snapshot!(all);
 }
@@ -663,184 +657,194 @@ fn broken_overrides() {
     insta::assert_snapshot!(all);
 }
 
-#[test]
-fn broken_files() {
-    let folder = tempfile::tempdir().unwrap();
-    let write = |name: &str, bytes: &[u8]| {
-        let path = folder.path().join(name);
+/// A folder that broken files are written to.
+struct Folder(TempDir);
+
+impl Folder {
+    /// Writes a file and returns its path.
+    fn write(&self, name: &str, bytes: &[u8]) -> String {
+        let path = self.0.path().join(name);
         std::fs::write(&path, bytes).unwrap();
         path.display().to_string()
-    };
-    let list = |name: &str, bytes: &[u8]| {
-        write(name, bytes);
-        let shape = "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }";
-        write(
-            "scene.toml",
-            GOOD.replace(shape, &format!("particles = \"{name}\""))
-                .as_bytes(),
-        )
-    };
-    let with_list = |name: &str| {
-        let shape = "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }";
-        let text = GOOD.replace(shape, &format!("particles = \"{name}\""));
-        write("scene.toml", text.as_bytes())
-    };
-    let with_mesh = |name: &str| {
+    }
+
+    /// Writes a particle list and a scene that uses it; returns the scene's path.
+    fn list(&self, name: &str, bytes: &[u8]) -> String {
+        self.write(name, bytes);
+        self.scene_with_list(name)
+    }
+
+    /// Writes the good scene with a particle list for its shape; returns its path.
+    fn scene_with_list(&self, name: &str) -> String {
+        let text = GOOD.replace(SHAPE, &format!("particles = \"{name}\""));
+        self.write("scene.toml", text.as_bytes())
+    }
+
+    /// Writes a scene with a mesh for its shape; returns its path.
+    fn scene_with_mesh(&self, name: &str) -> String {
         let text = format!(
             "dimension = 3\ndx = 0.1\n[materials.jelly]\npreset = \"jelly\"\n[[bodies]]\nmaterial = \"jelly\"\nshape = {{ mesh = \"{name}\" }}\n"
         );
-        write("scene.toml", text.as_bytes())
-    };
-    let junk: Vec<u8> = (0..600_u32).map(|i| (i * 37 % 251) as u8).collect();
-    let cases: &[(&str, &dyn Fn() -> String)] = &[
-        ("an empty file", &|| write("empty.toml", b"")),
-        ("only a comment", &|| write("comment.toml", b"# later\n")),
-        ("a folder", &|| folder.path().display().to_string()),
-        ("binary junk", &|| write("junk.toml", &junk)),
-        ("junk that is text", &|| {
-            write("text.toml", b"\x01\x02 hello \x00 world \x7f ~~~")
-        }),
-        ("no such file", &|| "dam-brake".to_owned()),
-        ("no such file at all", &|| "no/such/file.toml".to_owned()),
-        ("an empty list", &|| list("empty.csv", b"")),
-        ("a list of nothing", &|| {
-            list("nothing.csv", b"x,y,volume\n")
-        }),
-        ("a list without a header", &|| {
-            list("header.csv", b"0.1,0.2\n0.2,0.2\n")
-        }),
-        ("a list cut short", &|| {
-            list("cut.csv", b"x,y,volume\n0.1,0.2,0.01\n0.2,0.")
-        }),
-        ("a list with a word", &|| {
-            list("word.csv", b"x,y,volume\n0.1,much,0.01\n")
-        }),
-        ("a list with nan", &|| {
-            list("nan.csv", b"x,y,volume\n0.1,nan,0.01\n")
-        }),
-        ("a list with a negative volume", &|| {
-            list("negative.csv", b"x,y,volume\n0.1,0.2,-0.01\n")
-        }),
-        ("a list with an unknown column", &|| {
-            list("column.csv", b"x,y,vollume\n0.1,0.2,0.01\n")
-        }),
-        ("a list of 3D", &|| {
-            list("three.csv", b"x,y,z\n0.1,0.2,0.3\n")
-        }),
-        ("a list without volumes", &|| {
-            list("bare.csv", b"x,y\n0.1,0.2\n")
-        }),
-        ("a list outside the domain", &|| {
-            list("outside.csv", b"x,y,volume\n0.1,0.2,0.01\n0.1,2.2,0.01\n")
-        }),
-        ("a list of junk", &|| list("junk.csv", &junk)),
-        ("an npz of junk", &|| list("junk.npz", &junk)),
-        ("an npz of words", &|| {
-            list("words.npz", &npz("<U4", "(2, 2)", &[0; 64]))
-        }),
-        ("an npz of another shape", &|| {
-            list("shape.npz", &npz("<f8", "(4,)", &[0; 32]))
-        }),
-        ("an npz that is shorter than it says", &|| {
-            list("short.npz", &npz("<f8", "(1000000000, 2)", &[0; 32]))
-        }),
-        ("a ply of 3D junk", &|| list("junk.ply", &junk)),
-        ("a ply that promises too much", &|| {
-            list(
-                "lie.ply",
-                PLY.replace("vertex 2", "vertex 1000000000000").as_bytes(),
-            )
-        }),
-        ("a ply with a word", &|| {
-            list("word.ply", PLY.replace("0.3 0.1", "0.3 much").as_bytes())
-        }),
-        ("a ply of nothing", &|| {
-            list(
-                "nothing.ply",
-                PLY.replace("vertex 2", "vertex 0").as_bytes(),
-            )
-        }),
-        ("a ply without y", &|| {
-            list("flat.ply", PLY.replace("float y", "float w").as_bytes())
-        }),
-        ("a list with a mark of byte order, cut", &|| {
-            list("mark.csv", "\u{feff}x,y,volume\n0.1,0.2\n".as_bytes())
-        }),
-        ("a list in bytes of another alphabet", &|| {
-            list("latin.csv", b"x,y,volume\n0.1,0.2,0.01 # gr\xfc\xdfe\n")
-        }),
-        ("a list with decimal commas", &|| {
-            list("comma.csv", b"x;y;volume\n0,1;0,2;0,01\n")
-        }),
-        ("a scene in bytes of another alphabet", &|| {
-            write("latin.toml", b"title = \"gr\xfc\xdfe\"\ndx = 0.1\n")
-        }),
-        ("a scene in two bytes a letter", &|| {
-            write("wide.toml", b"\xff\xfed\x00x\x00 \x00=\x00 \x001\x00")
-        }),
-        ("a scene cut short", &|| {
-            write("half.toml", &GOOD.as_bytes()[..GOOD.len() / 2])
-        }),
-        ("a list that is a folder", &|| {
-            std::fs::create_dir(folder.path().join("folder.csv")).unwrap();
-            with_list("folder.csv")
-        }),
-        ("a mesh that is not there", &|| with_mesh("none.stl")),
-        ("a mesh of another kind", &|| {
-            write("mesh.fbx", b"x");
-            with_mesh("mesh.fbx")
-        }),
-        ("an empty mesh", &|| {
-            write("empty.obj", b"");
-            with_mesh("empty.obj")
-        }),
-        ("an open mesh", &|| {
-            write("open.obj", OBJ.replace("f 1 3 2\n", "").as_bytes());
-            with_mesh("open.obj")
-        }),
-        ("a mesh with nan", &|| {
-            write("nan.obj", OBJ.replace("v 0 1 0", "v 0 nan 0").as_bytes());
-            with_mesh("nan.obj")
-        }),
-        ("a mesh with a corner that is not there", &|| {
-            write("corner.obj", OBJ.replace("f 1 3 2", "f 1 3 20").as_bytes());
-            with_mesh("corner.obj")
-        }),
-        ("a mesh cut short", &|| {
-            let mut bytes = vec![0; 84 + 50];
-            bytes[80] = 9;
-            write("cut.stl", &bytes);
-            with_mesh("cut.stl")
-        }),
-        ("a mesh without thickness", &|| {
-            write("flat.obj", OBJ.replace("v 0 0 1", "v 1 1 0").as_bytes());
-            with_mesh("flat.obj")
-        }),
-        ("an npz that is not there", &|| {
-            write(
-                "scene.toml",
-                GOOD.replace(
-                    "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }",
-                    "particles = \"none.npz\"",
-                )
-                .as_bytes(),
-            )
-        }),
-    ];
+        self.write("scene.toml", text.as_bytes())
+    }
+}
+
+/// Returns bytes without a meaning.
+fn junk() -> Vec<u8> {
+    (0..600_u32).map(|i| (i * 37 % 251) as u8).collect()
+}
+
+/// Writes the files of a case to a folder and returns the path of its scene.
+type WriteCase = fn(&Folder) -> String;
+
+/// Faults of files: (name, files).
+const BROKEN_FILES: &[(&str, WriteCase)] = &[
+    ("an empty file", |f| f.write("empty.toml", b"")),
+    ("only a comment", |f| f.write("comment.toml", b"# later\n")),
+    ("a folder", |f| f.0.path().display().to_string()),
+    ("binary junk", |f| f.write("junk.toml", &junk())),
+    ("junk that is text", |f| {
+        f.write("text.toml", b"\x01\x02 hello \x00 world \x7f ~~~")
+    }),
+    ("no such file", |_| "dam-brake".to_owned()),
+    ("no such file at all", |_| "no/such/file.toml".to_owned()),
+    ("an empty list", |f| f.list("empty.csv", b"")),
+    ("a list of nothing", |f| {
+        f.list("nothing.csv", b"x,y,volume\n")
+    }),
+    ("a list without a header", |f| {
+        f.list("header.csv", b"0.1,0.2\n0.2,0.2\n")
+    }),
+    ("a list cut short", |f| {
+        f.list("cut.csv", b"x,y,volume\n0.1,0.2,0.01\n0.2,0.")
+    }),
+    ("a list with a word", |f| {
+        f.list("word.csv", b"x,y,volume\n0.1,much,0.01\n")
+    }),
+    ("a list with nan", |f| {
+        f.list("nan.csv", b"x,y,volume\n0.1,nan,0.01\n")
+    }),
+    ("a list with a negative volume", |f| {
+        f.list("negative.csv", b"x,y,volume\n0.1,0.2,-0.01\n")
+    }),
+    ("a list with an unknown column", |f| {
+        f.list("column.csv", b"x,y,vollume\n0.1,0.2,0.01\n")
+    }),
+    ("a list of 3D", |f| {
+        f.list("three.csv", b"x,y,z\n0.1,0.2,0.3\n")
+    }),
+    ("a list without volumes", |f| {
+        f.list("bare.csv", b"x,y\n0.1,0.2\n")
+    }),
+    ("a list outside the domain", |f| {
+        f.list("outside.csv", b"x,y,volume\n0.1,0.2,0.01\n0.1,2.2,0.01\n")
+    }),
+    ("a list of junk", |f| f.list("junk.csv", &junk())),
+    ("an npz of junk", |f| f.list("junk.npz", &junk())),
+    ("an npz of words", |f| {
+        f.list("words.npz", &npz("<U4", "(2, 2)", &[0; 64]))
+    }),
+    ("an npz of another shape", |f| {
+        f.list("shape.npz", &npz("<f8", "(4,)", &[0; 32]))
+    }),
+    ("an npz that is shorter than it says", |f| {
+        f.list("short.npz", &npz("<f8", "(1000000000, 2)", &[0; 32]))
+    }),
+    ("a ply of 3D junk", |f| f.list("junk.ply", &junk())),
+    ("a ply that promises too much", |f| {
+        f.list(
+            "lie.ply",
+            PLY.replace("vertex 2", "vertex 1000000000000").as_bytes(),
+        )
+    }),
+    ("a ply with a word", |f| {
+        f.list("word.ply", PLY.replace("0.3 0.1", "0.3 much").as_bytes())
+    }),
+    ("a ply of nothing", |f| {
+        f.list(
+            "nothing.ply",
+            PLY.replace("vertex 2", "vertex 0").as_bytes(),
+        )
+    }),
+    ("a ply without y", |f| {
+        f.list("flat.ply", PLY.replace("float y", "float w").as_bytes())
+    }),
+    ("a list with a mark of byte order, cut", |f| {
+        f.list("mark.csv", "\u{feff}x,y,volume\n0.1,0.2\n".as_bytes())
+    }),
+    ("a list in bytes of another alphabet", |f| {
+        f.list("latin.csv", b"x,y,volume\n0.1,0.2,0.01 # gr\xfc\xdfe\n")
+    }),
+    ("a list with decimal commas", |f| {
+        f.list("comma.csv", b"x;y;volume\n0,1;0,2;0,01\n")
+    }),
+    ("a scene in bytes of another alphabet", |f| {
+        f.write("latin.toml", b"title = \"gr\xfc\xdfe\"\ndx = 0.1\n")
+    }),
+    ("a scene in two bytes a letter", |f| {
+        f.write("wide.toml", b"\xff\xfed\x00x\x00 \x00=\x00 \x001\x00")
+    }),
+    ("a scene cut short", |f| {
+        f.write("half.toml", &GOOD.as_bytes()[..GOOD.len() / 2])
+    }),
+    ("a list that is a folder", |f| {
+        std::fs::create_dir(f.0.path().join("folder.csv")).unwrap();
+        f.scene_with_list("folder.csv")
+    }),
+    ("a mesh that is not there", |f| {
+        f.scene_with_mesh("none.stl")
+    }),
+    ("a mesh of another kind", |f| {
+        f.write("mesh.fbx", b"x");
+        f.scene_with_mesh("mesh.fbx")
+    }),
+    ("an empty mesh", |f| {
+        f.write("empty.obj", b"");
+        f.scene_with_mesh("empty.obj")
+    }),
+    ("an open mesh", |f| {
+        f.write("open.obj", OBJ.replace("f 1 3 2\n", "").as_bytes());
+        f.scene_with_mesh("open.obj")
+    }),
+    ("a mesh with nan", |f| {
+        f.write("nan.obj", OBJ.replace("v 0 1 0", "v 0 nan 0").as_bytes());
+        f.scene_with_mesh("nan.obj")
+    }),
+    ("a mesh with a corner that is not there", |f| {
+        f.write("corner.obj", OBJ.replace("f 1 3 2", "f 1 3 20").as_bytes());
+        f.scene_with_mesh("corner.obj")
+    }),
+    ("a mesh cut short", |f| {
+        let mut bytes = vec![0; 84 + 50];
+        bytes[80] = 9;
+        f.write("cut.stl", &bytes);
+        f.scene_with_mesh("cut.stl")
+    }),
+    ("a mesh without thickness", |f| {
+        f.write("flat.obj", OBJ.replace("v 0 0 1", "v 1 1 0").as_bytes());
+        f.scene_with_mesh("flat.obj")
+    }),
+    ("an npz that is not there", |f| {
+        f.scene_with_list("none.npz")
+    }),
+];
+
+#[test]
+fn broken_files() {
+    let folder = Folder(tempfile::tempdir().unwrap());
+    let place = folder.0.path().display().to_string();
     let mut all = String::new();
-    for (what, make) in cases {
-        let error = match Scene::load(&make(), &[]) {
-            Err(error) => error
-                .to_string()
-                .replace(&folder.path().display().to_string(), "DIR"),
-            Ok(scene) => panic!("{what}: {}", scene.summary()),
+    for (name, write) in BROKEN_FILES {
+        let error = match Scene::load(&write(&folder), &[]) {
+            Err(error) => error.to_string().replace(&place, "DIR"),
+            Ok(scene) => panic!("{name}: {}", scene.summary()),
         };
-        writeln!(all, "# {what}\n{error}\n").unwrap();
+        writeln!(all, "# {name}\n{error}\n").unwrap();
     }
     insta::assert_snapshot!(all);
 }
 
-/// Devices and pipes never end, or never begin: they are refused without being read.
+/// Devices and pipes may never end, so they are refused without being read.
 #[cfg(unix)]
 #[test]
 fn only_plain_files_are_read() {
@@ -853,11 +857,10 @@ fn only_plain_files_are_read() {
         let error = Scene::load(path, &[]).unwrap_err();
         assert!(error.message.contains("a device or a pipe"), "{error}");
     }
-    let shape = "shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }";
     let zero = folder.path().join("zero.npz");
     std::os::unix::fs::symlink("/dev/zero", &zero).unwrap();
     for path in [&*pipe, &zero.display().to_string()] {
-        let text = GOOD.replace(shape, &format!("particles = \"{path}\""));
+        let text = GOOD.replace(SHAPE, &format!("particles = \"{path}\""));
         let error = failure(&text, &[]);
         assert!(error.message.contains("a device or a pipe"), "{error}");
         assert!(error.line > 0, "{error}");
@@ -865,7 +868,7 @@ fn only_plain_files_are_read() {
 }
 
 #[test]
-fn line_ends_and_marks_of_other_systems_are_no_errors() {
+fn line_ends_and_byte_order_marks_of_other_systems_are_accepted() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("column.toml");
     for text in [GOOD.replace('\n', "\r\n"), format!("\u{feff}{GOOD}")] {
@@ -881,14 +884,14 @@ fn line_ends_and_marks_of_other_systems_are_no_errors() {
 }
 
 #[test]
-fn the_memory_limit_can_be_moved() {
+fn the_memory_limit_can_be_set() {
     let small = Limits { memory: 10_000 };
     assert!(Scene::parse_within(GOOD, "a", &[], &small).is_err());
     assert!(Scene::parse_within(GOOD, "a", &[], &Limits { memory: 1_000_000 }).is_ok());
 }
 
 #[test]
-fn colours_only_when_asked() {
+fn errors_are_colored_on_request_only() {
     let error = failure("dx = 1\nzebra = 2", &[]);
     assert!(!error.to_string().contains('\u{1b}'));
     assert!(error.render(true).contains('\u{1b}'));

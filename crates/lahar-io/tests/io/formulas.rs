@@ -1,7 +1,7 @@
-//! Expressions of scenes, as the simulation feels them.
+//! Expressions in scenes act on the simulation as their values say.
 
-use lahar::{Data, Field, Isa, Simulate};
-use lahar_io::scene::Scene;
+use crate::support::{build, column, parse};
+use lahar::{Field, Simulate};
 
 const DUST: &str = r#"
 dx = 0.05
@@ -17,18 +17,7 @@ shape = { box = { min = [0.5, 0.25], max = [1.0, 0.75] } }
 "#;
 
 fn with(overrides: &[(&str, &str)]) -> Box<dyn Simulate> {
-    let overrides: Vec<(String, String)> = overrides
-        .iter()
-        .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
-        .collect();
-    let scene = Scene::parse(DUST, "a.toml", &overrides).unwrap_or_else(|error| panic!("{error}"));
-    let built = scene.build(Isa::Portable);
-    built.unwrap_or_else(|error| panic!("{error}")).simulation
-}
-
-fn column(simulation: &dyn Simulate, field: Field) -> Vec<f64> {
-    let snapshot = simulation.snapshot(&[field]);
-    snapshot.get(field).map(Data::to_f64).unwrap_or_default()
+    build(&parse(DUST, overrides))
 }
 
 #[test]
@@ -53,7 +42,7 @@ fn velocity_and_its_gradient_follow_the_expression() {
 }
 
 #[test]
-fn a_velocity_by_numbers_is_that_by_text() {
+fn numbers_and_texts_give_the_same_velocity() {
     let numbers = with(&[("bodies.cloud.velocity", "[1.5, -2.0]")]);
     let text = with(&[("bodies.cloud.velocity", "[\"3/2\", \"-2\"]")]);
     assert_eq!(
@@ -62,7 +51,7 @@ fn a_velocity_by_numbers_is_that_by_text() {
     );
 }
 
-/// Dust in a field that is the same everywhere moves as a body.
+/// Dust in a uniform field moves as a rigid body.
 #[test]
 fn gravity_by_an_expression_in_time() {
     let mut simulation = with(&[("gravity", "[\"3*cos(20*t)\", -9.81]")]);
@@ -83,7 +72,7 @@ fn gravity_by_an_expression_in_time() {
     }
 }
 
-/// Each of these adds one momentum, known beforehand, to the cloud in a substep.
+/// Each force changes the momentum of the cloud by a known amount in one substep.
 #[test]
 fn forces_of_every_kind_push() {
     let mut mass = 0.0;
@@ -137,10 +126,7 @@ fn forces_of_every_kind_push() {
 fn forces_count_for_the_speed_of_sound() {
     let speed = |gravity: &str, forces: &str| {
         let text = DUST.replace("preset = \"dust\"", "preset = \"water\"");
-        let overrides = [("gravity", gravity), ("forces", forces)]
-            .map(|(key, value)| (key.to_owned(), value.to_owned()));
-        let scene = Scene::parse(&text, "a.toml", &overrides);
-        scene.unwrap_or_else(|error| panic!("{error}")).materials[0].wave_speed
+        parse(&text, &[("gravity", gravity), ("forces", forces)]).materials[0].wave_speed
     };
     let none = "[{ damping = 0 }]";
     let plain = speed("[0, -8]", none);
@@ -148,7 +134,7 @@ fn forces_count_for_the_speed_of_sound() {
     assert_eq!(speed("[0, \"-8\"]", none), plain);
     let same = speed("[0, 0]", "[{ acceleration = [0, \"-8 + 0*x\"] }]");
     assert!((same / plain - 1.0).abs() < 1e-12);
-    // ± 8 along x over half of the bodies' side.
+    // The speed of a fall with 8 m/s² along x over half of the body's side.
     let swung = speed("[\"8*sin(100*t)\", 0]", none);
     assert!(
         (swung / 10.0 / (8.0_f64 * 0.5).sqrt() - 1.0).abs() < 0.05,

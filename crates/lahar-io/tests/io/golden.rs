@@ -1,8 +1,8 @@
-//! Every built-in scene, a few frames on the portable instruction set: the same bits as ever, on
-//! every machine and any number of threads.
+//! A few frames of every built-in scene have the recorded bits on the portable instruction set, on every machine and any
+//! number of threads.
 //!
-//! A change of physics changes them: look at the pictures, then write them anew with
-//! `LAHAR_UPDATE=1 cargo test -p lahar-io --test golden`.
+//! A change of the physics changes the bits. Look at pictures of the scenes, then record the new bits with
+//! `LAHAR_UPDATE=1 cargo test -p lahar-io --test io golden`.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -12,7 +12,7 @@ use lahar::{Isa, Simulate};
 use lahar_io::builtin;
 use lahar_io::scene::Scene;
 
-/// Frames of each scene; of the largest, one.
+/// Returns the number of frames to run: fewer for the largest scenes.
 fn frames(scene: &Scene) -> u32 {
     if scene.expected_particles() > 2e5 {
         1
@@ -21,20 +21,20 @@ fn frames(scene: &Scene) -> u32 {
     }
 }
 
-/// FNV-1a over the bits of what moves.
+/// Returns the FNV-1a hash of the bits of positions, velocities and J.
 fn hash(simulation: &dyn Simulate) -> u64 {
     let snapshot = simulation.snapshot(&[Field::Position, Field::Velocity, Field::Jacobian]);
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
-    let mut eat = |bits: u64| {
+    let mut add = |bits: u64| {
         for byte in bits.to_le_bytes() {
             hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
         }
     };
     for (_, data) in &snapshot.columns {
         match data {
-            Data::F32(values) => values.iter().for_each(|x| eat(u64::from(x.to_bits()))),
-            Data::F64(values) => values.iter().for_each(|x| eat(x.to_bits())),
-            Data::U32(values) => values.iter().for_each(|&x| eat(u64::from(x))),
+            Data::F32(values) => values.iter().for_each(|x| add(u64::from(x.to_bits()))),
+            Data::F64(values) => values.iter().for_each(|x| add(x.to_bits())),
+            Data::U32(values) => values.iter().for_each(|&x| add(u64::from(x))),
         }
     }
     hash
@@ -51,7 +51,7 @@ fn built_in_scenes_keep_their_bits() {
                 .advance_to(f64::from(frame) / plan.frame_rate)
                 .expect("it runs");
         }
-        writeln!(found, "{} {:016x}", scene.name, hash(&*simulation)).expect("a string takes all");
+        writeln!(found, "{} {:016x}", scene.name, hash(&*simulation)).expect("writing to a string");
     }
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/io/golden.txt");
     if std::env::var_os("LAHAR_UPDATE").is_some() {

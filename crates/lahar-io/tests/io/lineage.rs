@@ -1,10 +1,11 @@
-//! Scenes that follow other programs number by number, against what those programs make of the same
-//! particles: tests/peers/make_tables.py ran them and wrote lineage.csv.
+//! Scenes that follow other programs number by number, compared with those programs on the same particles.
+//!
+//! tests/peers/make_tables.py ran the programs and wrote lineage.csv.
 
 use lahar::{Data, Field, Isa};
 use lahar_io::scene::Scene;
 
-/// A row of the table: scene, substep, figures.
+/// Returns the rows of the table: scene, substep, figures.
 fn table() -> Vec<(&'static str, u64, Vec<f64>)> {
     let text = include_str!("lineage.csv");
     let rows = text.lines().filter(|line| !line.starts_with(['#', 's']));
@@ -18,7 +19,7 @@ fn table() -> Vec<(&'static str, u64, Vec<f64>)> {
     .collect()
 }
 
-/// The figures of a state, as the table has them.
+/// Returns the figures of a state in the order of the table.
 fn figures(simulation: &dyn lahar::Simulate) -> Vec<f64> {
     let snapshot = simulation.snapshot(&[Field::Position, Field::Velocity, Field::Jacobian]);
     let column = |field| snapshot.get(field).map(Data::to_f64).unwrap();
@@ -46,7 +47,7 @@ fn figures(simulation: &dyn lahar::Simulate) -> Vec<f64> {
     found
 }
 
-/// Runs each scene of the table and compares: moments, centre, speed, J, each relative to its size.
+/// Runs each scene of the table and compares moments, center, speed and J, each relative to its size.
 fn compare(precision: &str, limits: [f64; 4]) {
     let table = table();
     let mut scenes: Vec<&str> = table.iter().map(|(scene, ..)| *scene).collect();
@@ -56,7 +57,7 @@ fn compare(precision: &str, limits: [f64; 4]) {
         let plan = Scene::load(scene, &own).unwrap_or_else(|error| panic!("{error}"));
         let mut simulation = plan.build(Isa::Portable).unwrap().simulation;
         for (_, step, wanted) in table.iter().filter(|row| row.0 == scene) {
-            // Where these grains of snow hit the floor, one rounding grows by 10⁵ in 20 substeps.
+            // When these grains of snow hit the floor, a rounding error grows by 10⁵ in 20 substeps.
             if scene == "mls-mpm88" && precision == "f32" && *step > 560 {
                 continue;
             }
@@ -67,7 +68,7 @@ fn compare(precision: &str, limits: [f64; 4]) {
             assert_eq!(found.len(), wanted.len());
             for (place, (found, wanted)) in found.iter().zip(wanted).enumerate() {
                 let kind = [0, 0, 0, 0, 1, 1, 1, 2, 3, 3][place];
-                // Dust has no J in the programs.
+                // The programs store no J for dust.
                 let apart = (found - wanted).abs() / wanted.abs().max(1e-3);
                 assert!(
                     wanted.is_nan() || apart < limits[kind],
@@ -79,11 +80,11 @@ fn compare(precision: &str, limits: [f64; 4]) {
 }
 
 #[test]
-fn scenes_are_the_programs_in_f64() {
+fn scenes_follow_the_programs_in_f64() {
     compare("f64", [1e-8, 1e-8, 1e-8, 1e-7]);
 }
 
 #[test]
-fn scenes_are_the_programs_in_f32() {
+fn scenes_follow_the_programs_in_f32() {
     compare("f32", [1e-5, 1e-5, 1e-4, 5e-3]);
 }

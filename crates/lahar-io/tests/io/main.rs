@@ -1,4 +1,6 @@
-//! Scenes from their text to what they do. One program, so that the crate is linked once.
+//! Tests of scenes, from their text to the particles that they build, in one binary, so that the crate is linked once.
+//!
+//! The test of allocations is a binary of its own: its global allocator would count the allocations of other tests.
 
 mod broken_scenes;
 mod builtin;
@@ -7,5 +9,6 @@ mod golden;
 mod lineage;
 mod scenes;
 mod shapes;
+mod support;
 mod tutorial;
 mod water;

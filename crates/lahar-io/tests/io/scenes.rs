@@ -1,6 +1,7 @@
-//! What scenes come to: overrides, particles, motion, warnings, and that nothing makes them panic.
+//! Scenes, parsed and built: overrides, particles, motion, warnings, and that no text makes them panic.
 
-use lahar::{Data, Field, Isa, Simulate};
+use crate::support::{build, column, overrides, parse};
+use lahar::{Field, Isa};
 use lahar_io::npz::{Compression, NpzWriter};
 use lahar_io::scene::{Limits, Precision, Scene};
 use proptest::prelude::*;
@@ -19,35 +20,12 @@ material = "water"
 shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }
 "#;
 
-fn parse(text: &str) -> Scene {
-    Scene::parse(text, "a.toml", &[]).unwrap_or_else(|error| panic!("{error}"))
-}
-
 fn with(overrides: &[(&str, &str)]) -> Scene {
-    let overrides: Vec<(String, String)> = overrides
-        .iter()
-        .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
-        .collect();
-    Scene::parse(COLUMN, "a.toml", &overrides).unwrap_or_else(|error| panic!("{error}"))
+    parse(COLUMN, overrides)
 }
 
-fn build(scene: &Scene) -> Box<dyn Simulate> {
-    scene
-        .build(Isa::Portable)
-        .unwrap_or_else(|error| panic!("{error}"))
-        .simulation
-}
-
-fn column(simulation: &dyn Simulate, field: Field) -> Vec<f64> {
-    simulation
-        .snapshot(&[field])
-        .get(field)
-        .map(Data::to_f64)
-        .unwrap_or_default()
-}
-
-/// A particle list from the command line takes the place of the shape and of what goes with it, and
-/// is found from the current folder; a shape takes the place of a list.
+/// A particle list on the command line replaces the shape and the keys that belong to it, and its path is relative to the
+/// current folder; a shape replaces a list.
 #[test]
 fn a_start_is_replaced_from_the_command_line() {
     let folder = tempfile::tempdir().unwrap();
@@ -55,12 +33,10 @@ fn a_start_is_replaced_from_the_command_line() {
     std::fs::write(&path, "x,y\n0.5,0.25\n1.5,0.75\n").unwrap();
     let path = path.to_str().unwrap();
     let list = ("bodies.square.particles", path);
-    let load = |overrides: &[(&str, &str)]| {
-        let own = |(key, value): &(&str, &str)| ((*key).to_owned(), (*value).to_owned());
-        let overrides: Vec<_> = overrides.iter().map(own).collect();
-        Scene::load("mpm88", &overrides).unwrap_or_else(|error| panic!("{error}"))
+    let load = |pairs: &[(&str, &str)]| {
+        Scene::load("mpm88", &overrides(pairs)).unwrap_or_else(|error| panic!("{error}"))
     };
-    // The particles' volume is not the shape's, and stays.
+    // `particle_volume` does not belong to the shape, so it stays.
     let domain = ("domain.max", "[2.0, 1.0]");
     let mut replaced = build(&load(&[domain, list]));
     assert_eq!(column(&*replaced, Field::Position), [0.5, 0.25, 1.5, 0.75]);
@@ -71,32 +47,32 @@ fn a_start_is_replaced_from_the_command_line() {
     assert!(back.expected_particles() > 2000.0);
 }
 
-/// Its weight compresses what stands on the floor: there is more of it in its shape.
+/// Without start pressure: the weight of a body on the floor compresses it, so its shape contains more mass.
 const WITHOUT_PRESSURE: (&str, &str) = ("bodies.column.pressure", "none");
 
-/// A body that stands on the floor starts as its weight compresses it; one that moves or floats does not.
+/// A body that stands on the floor starts compressed by its weight; one that moves or floats does not.
 #[test]
-fn what_stands_on_the_floor_starts_under_pressure() {
-    let most = |overrides: &[(&str, &str)]| {
+fn a_body_on_the_floor_starts_under_pressure() {
+    let smallest = |overrides: &[(&str, &str)]| {
         let jacobian = column(&*build(&with(overrides)), Field::Jacobian);
         jacobian.into_iter().fold(1.0_f64, f64::min)
     };
-    assert!(most(&[]) < 1.0 - 1e-3);
-    assert_eq!(most(&[WITHOUT_PRESSURE]), 1.0);
-    assert_eq!(most(&[("bodies.column.velocity", "[1, 0]")]), 1.0);
+    assert!(smallest(&[]) < 1.0 - 1e-3);
+    assert_eq!(smallest(&[WITHOUT_PRESSURE]), 1.0);
+    assert_eq!(smallest(&[("bodies.column.velocity", "[1, 0]")]), 1.0);
     let floating = "{ box = { min = [0.2, 0.3], max = [0.5, 0.8] } }";
-    assert_eq!(most(&[("bodies.column.shape", floating)]), 1.0);
-    assert_eq!(most(&[("domain.walls", "\"open\"")]), 1.0);
-    assert_eq!(most(&[("materials.water.volume", "\"jacobian\"")]), 1.0);
+    assert_eq!(smallest(&[("bodies.column.shape", floating)]), 1.0);
+    assert_eq!(smallest(&[("domain.walls", "\"open\"")]), 1.0);
+    assert_eq!(smallest(&[("materials.water.volume", "\"jacobian\"")]), 1.0);
     // The floor is where gravity points.
     let leaning = "{ box = { min = [0.0, 0.3], max = [0.2, 0.8] } }";
     let sideways = [("bodies.column.shape", leaning), ("gravity", "[-10, 0]")];
-    assert!(most(&sideways) < 1.0 - 1e-4);
+    assert!(smallest(&sideways) < 1.0 - 1e-4);
     let asked = ("bodies.column.pressure", "hydrostatic");
-    assert!(most(&[("bodies.column.shape", floating), asked]) < 1.0 - 1e-4);
+    assert!(smallest(&[("bodies.column.shape", floating), asked]) < 1.0 - 1e-4);
 }
 
-/// Measured volumes: those of the surface are larger, those inside a lattice as given; masses stay.
+/// Measured volumes are larger at the surface and as given inside a lattice; masses stay.
 #[test]
 fn volumes_are_measured() {
     let lattice = ("bodies.column.sampling", "lattice");
@@ -113,7 +89,7 @@ fn volumes_are_measured() {
     assert_eq!(body.diagnostics().mass, plain.diagnostics().mass);
 }
 
-/// A spread moves velocities only, evenly, by up to what it says.
+/// A spread changes velocities only, uniformly up to its size.
 #[test]
 fn velocities_are_spread() {
     let plain = build(&with(&[]));
@@ -185,7 +161,7 @@ fn automatic_sound_speed_is_ten_times_the_fastest_fall() {
 }
 
 #[test]
-fn spin_and_gradient_turn_about_the_centre_of_mass() {
+fn spin_turns_about_the_center_of_mass() {
     let scene = with(&[
         ("bodies.column.spin", "2"),
         ("bodies.column.velocity", "[1, 3]"),
@@ -243,7 +219,7 @@ fn the_seed_decides() {
 
 #[test]
 fn the_resolved_scene_reads_as_a_scene() {
-    // JSON values of keys are TOML values here but for nesting: compare what both say of a material.
+    // Compares a material key in both forms.
     let scene = with(&[("materials.water.tension", "unlimited")]);
     let resolved = scene.resolved();
     assert_eq!(resolved["materials"]["water"]["tension"], "unlimited");
@@ -260,7 +236,7 @@ fn the_resolved_scene_reads_as_a_scene() {
 }
 
 #[test]
-fn a_frame_is_a_particle_list() {
+fn a_frame_serves_as_a_particle_list() {
     let folder = tempfile::tempdir().unwrap();
     let mut simulation = build(&with(&[("precision", "f64"), ("bodies.column.spin", "1")]));
     simulation.advance_to(0.01).unwrap();
@@ -308,13 +284,7 @@ fn a_frame_is_a_particle_list() {
 #[test]
 fn suspicious_scenes_run_with_warnings() {
     let warned = |text: &str, overrides: &[(&str, &str)], wanted: &str| {
-        let overrides: Vec<(String, String)> = overrides
-            .iter()
-            .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
-            .collect();
-        let scene =
-            Scene::parse(text, "a.toml", &overrides).unwrap_or_else(|error| panic!("{error}"));
-        let warnings = scene
+        let warnings = parse(text, overrides)
             .build(Isa::Portable)
             .unwrap_or_else(|error| panic!("{error}"))
             .warnings;
@@ -374,6 +344,7 @@ fn three_dimensions() {
         shape = { half_space = { point = [0.0, 0.5, 0.0], normal = [0.0, 2.0, 0.0] } }
         sampling = "lattice"
         "#,
+        &[],
     );
     let simulation = build(&scene);
     assert_eq!(
@@ -386,12 +357,8 @@ fn three_dimensions() {
 #[test]
 fn elastic_pairs_agree() {
     let speed = |keys: &str| {
-        parse(&COLUMN.replace(
-            "preset = \"water\"",
-            &format!("model = \"corotated\"\ndensity = 1000.0\n{keys}"),
-        ))
-        .materials[0]
-            .wave_speed
+        let model = format!("model = \"corotated\"\ndensity = 1000.0\n{keys}");
+        parse(&COLUMN.replace("preset = \"water\"", &model), &[]).materials[0].wave_speed
     };
     // E = 26, nu = 0.3: lambda = 15, mu = 10; in 2D K = lambda + mu.
     let wanted = speed("lame_lambda = 15.0\nlame_mu = 10.0");
@@ -402,8 +369,8 @@ fn elastic_pairs_agree() {
 #[test]
 fn keys_replace_those_of_the_preset() {
     let jelly = |keys: &str| {
-        parse(&COLUMN.replace("preset = \"water\"", &format!("preset = \"jelly\"\n{keys}")))
-            .resolved()["materials"]["water"]
+        let preset = format!("preset = \"jelly\"\n{keys}");
+        parse(&COLUMN.replace("preset = \"water\"", &preset), &[]).resolved()["materials"]["water"]
             .clone()
     };
     assert_eq!(jelly("youngs_modulus = 5.0")["poisson_ratio"], 0.45);
@@ -411,7 +378,7 @@ fn keys_replace_those_of_the_preset() {
     assert!(other.get("youngs_modulus").is_none() && other.get("poisson_ratio").is_none());
 }
 
-/// Pieces that mutations are made of.
+/// Pieces of text that mutations insert.
 const PIECES: &[&str] = &[
     "nan",
     "-1",
@@ -463,7 +430,7 @@ proptest! {
             while !text.is_char_boundary(end) { end += 1; }
             text.replace_range(start..end, piece);
         }
-        // Small enough that whatever still is a scene is built at once.
+        // The limit is so small that a mutation that still is a scene is built quickly.
         match Scene::parse_within(&text, "a.toml", &[], &Limits { memory: 25_000_000 }) {
             Err(error) => { error.render(false); }
             Ok(scene) => {
@@ -513,9 +480,9 @@ name = "block"
 shape = { box = { min = [0.5, 0.0], max = [1.0, 0.25] } }
 "#;
 
-/// No particle starts where a collider is, the others keep their mass, and outlets are told.
+/// No particle starts inside a collider, and the others keep their mass.
 #[test]
-fn what_is_inside_a_collider_is_left_out() {
+fn particles_inside_a_collider_are_left_out() {
     let scene = Scene::parse(IN_THE_WAY, "pool.toml", &[]).unwrap();
     let mut built = scene.build(Isa::Portable).unwrap();
     assert_eq!(built.left_out, [200]);
@@ -533,9 +500,9 @@ fn what_is_inside_a_collider_is_left_out() {
     assert!(error.contains("comes to no particle"), "{error}");
 }
 
-/// What a run records of a scene gives its colliders back, for replays.
+/// Replays read the colliders of a scene from the record of a run.
 #[test]
-fn colliders_are_read_back_from_what_a_run_records() {
+fn colliders_are_read_back_from_a_record() {
     for name in ["beach", "mixer", "square-obstacle", "box-obstacle-3d"] {
         let scene = Scene::load(name, &[]).unwrap();
         assert!(!scene.colliders.is_empty());

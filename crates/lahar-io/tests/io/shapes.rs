@@ -1,4 +1,4 @@
-//! Shapes of bodies: what they hold, and where.
+//! Shapes of bodies: their volumes and their centers.
 
 use lahar::{Data, Field, Isa};
 use lahar_io::scene::Scene;
@@ -14,7 +14,7 @@ fn scene(dimension: usize, shape: &str, file: &Path) -> Scene {
     Scene::parse(&text, &file.display().to_string(), &[]).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Mass (of density 1: the volume), the middle of the particles and their bounds.
+/// Returns the mass (of density 1, so the volume), the center of the particles and their bounds.
 fn measure(dimension: usize, shape: &str) -> (f64, Vec<f64>, Vec<[f64; 2]>) {
     measure_at(dimension, shape, Path::new("a.toml"))
 }
@@ -29,7 +29,7 @@ fn measure_at(dimension: usize, shape: &str, file: &Path) -> (f64, Vec<f64>, Vec
         .expect("there are particles");
     let count = simulation.particle_count() as f64;
     let axis = |i: usize| x.iter().skip(i).step_by(dimension).copied();
-    let middle = (0..dimension)
+    let center = (0..dimension)
         .map(|i| axis(i).sum::<f64>() / count)
         .collect();
     let bounds = (0..dimension)
@@ -40,20 +40,21 @@ fn measure_at(dimension: usize, shape: &str, file: &Path) -> (f64, Vec<f64>, Vec
             ]
         })
         .collect();
-    (simulation.diagnostics().mass, middle, bounds)
+    (simulation.diagnostics().mass, center, bounds)
 }
 
+/// Checks the volume and the center of a shape.
 #[track_caller]
-fn holds(dimension: usize, shape: &str, volume: f64, middle: &[f64]) {
-    let (found, centre, _) = measure(dimension, shape);
+fn check(dimension: usize, shape: &str, volume: f64, center: &[f64]) {
+    let (found, found_center, _) = measure(dimension, shape);
     assert!(
         (found / volume - 1.0).abs() < 2e-3,
         "{shape}: {found}, {volume} wanted"
     );
-    for (a, b) in centre.iter().zip(middle) {
+    for (a, b) in found_center.iter().zip(center) {
         assert!(
             (a - b).abs() < 6e-3,
-            "{shape}: {centre:?}, {middle:?} wanted"
+            "{shape}: {found_center:?}, {center:?} wanted"
         );
     }
 }
@@ -61,48 +62,48 @@ fn holds(dimension: usize, shape: &str, volume: f64, middle: &[f64]) {
 const BALL: &str = "ball = { center = [0.0, 0.0], radius = 0.5 }";
 
 #[test]
-fn plane_shapes_hold_what_formulas_say() {
+fn plane_shapes_have_the_volumes_of_formulas() {
     let strip = "capsule = { from = [0.0, 0.0], to = [0.3, 0.4], radius = 0.2 }";
-    holds(2, strip, 0.4 * 0.5 + PI * 0.04, &[0.15, 0.2]);
+    check(2, strip, 0.4 * 0.5 + PI * 0.04, &[0.15, 0.2]);
     let ring = format!("difference = [{{ {BALL} }}, {{ {BALL}, scale = 0.5 }}]");
-    holds(2, &ring, PI * (0.25 - 0.0625), &[0.0, 0.0]);
+    check(2, &ring, PI * (0.25 - 0.0625), &[0.0, 0.0]);
     let two = format!("union = [{{ {BALL} }}, {{ {BALL}, translate = [2.0, 0.0] }}]");
-    holds(2, &two, PI * 0.5, &[1.0, 0.0]);
+    check(2, &two, PI * 0.5, &[1.0, 0.0]);
     let half = "half_space = { point = [0.0, 0.0], normal = [0.0, -1.0] }";
     let upper = format!("intersection = [{{ {BALL} }}, {{ {half} }}]");
-    holds(2, &upper, PI / 8.0, &[0.0, 4.0 * 0.5 / (3.0 * PI)]);
+    check(2, &upper, PI / 8.0, &[0.0, 4.0 * 0.5 / (3.0 * PI)]);
 }
 
 #[test]
-fn scaled_turned_moved_copied() {
+fn shapes_are_scaled_turned_moved_and_copied() {
     let slab = "box = { min = [0.0, 0.0], max = [1.0, 0.2] }";
-    holds(2, &format!("{slab}, scale = 2.0"), 0.8, &[0.5, 0.1]);
-    holds(
+    check(2, &format!("{slab}, scale = 2.0"), 0.8, &[0.5, 0.1]);
+    check(
         2,
         &format!("{slab}, scale = [1.0, 2.0], about = [0.0, 0.0]"),
         0.4,
         &[0.5, 0.2],
     );
-    holds(2, &format!("{slab}, rotate = 90.0"), 0.2, &[0.5, 0.1]);
+    check(2, &format!("{slab}, rotate = 90.0"), 0.2, &[0.5, 0.1]);
     let about = format!("{slab}, rotate = 90.0, about = [0.0, 0.0], translate = [0.0, 1.0]");
-    holds(2, &about, 0.2, &[-0.1, 1.5]);
+    check(2, &about, 0.2, &[-0.1, 1.5]);
     let (_, _, bounds) = measure(2, &about);
     assert!(bounds[0][0] > -0.2 && bounds[0][1] < 0.0 && bounds[1][0] > 1.0 && bounds[1][1] < 2.0);
     let rows = format!("{slab}, copies = {{ count = [2, 3], step = [1.5, 0.5] }}");
-    holds(2, &rows, 6.0 * 0.2, &[1.25, 0.6]);
+    check(2, &rows, 6.0 * 0.2, &[1.25, 0.6]);
 }
 
 #[test]
-fn solid_shapes_hold_what_formulas_say() {
+fn solid_shapes_have_the_volumes_of_formulas() {
     let rod = "from = [0.0, 0.0, 0.0], to = [0.0, 1.0, 0.0], radius = 0.3";
-    holds(
+    check(
         3,
         &format!("cylinder = {{ {rod} }}"),
         PI * 0.09,
         &[0.0, 0.5, 0.0],
     );
     let capsule = PI * 0.09 + 4.0 / 3.0 * PI * 0.027;
-    holds(
+    check(
         3,
         &format!("capsule = {{ {rod} }}, rotate = [0.0, 0.0, 90.0]"),
         capsule,
@@ -112,7 +113,7 @@ fn solid_shapes_hold_what_formulas_say() {
     let bored = format!(
         "difference = [{{ {ball} }}, {{ cylinder = {{ from = [0, -1, 0], to = [0, 1, 0], radius = 0.2 }} }}]"
     );
-    // What is left of a bored ball: 4/3 π h³ with h half of the hole's length.
+    // A ball with a hole through its center has the volume 4/3 π h³, with h half of the hole's length.
     let left = 4.0 / 3.0 * PI * (0.16_f64 - 0.04).powf(1.5);
     let (found, _, _) = measure(3, &bored);
     assert!((found / left - 1.0).abs() < 0.01, "{found}, {left} wanted");
@@ -127,24 +128,24 @@ fn a_mesh_is_a_body() {
     std::fs::create_dir(folder.path().join("parts")).unwrap();
     std::fs::write(folder.path().join("parts/gem.obj"), GEM).unwrap();
     let file = folder.path().join("scene.toml");
-    let (mass, middle, _) = measure_at(3, "mesh = \"parts/gem.obj\"", &file);
+    let (mass, center, _) = measure_at(3, "mesh = \"parts/gem.obj\"", &file);
     // Two pyramids of height 3 on a square of area 2.
     assert!((mass / 4.0 - 1.0).abs() < 1e-6, "{mass}");
-    assert!(middle.iter().all(|x| x.abs() < 5e-3), "{middle:?}");
+    assert!(center.iter().all(|x| x.abs() < 5e-3), "{center:?}");
     let keys = "file = \"parts/gem.obj\", up = \"z\", size = 1.2, center = [1.0, 2.0, 3.0]";
-    let (mass, middle, bounds) = measure_at(3, &format!("mesh = {{ {keys} }}"), &file);
+    let (mass, center, bounds) = measure_at(3, &format!("mesh = {{ {keys} }}"), &file);
     assert!((mass / (4.0 * 0.008) - 1.0).abs() < 1e-6, "{mass}");
-    for (x, wanted) in middle.iter().zip([1.0, 2.0, 3.0]) {
-        assert!((x - wanted).abs() < 5e-3, "{middle:?}");
+    for (x, wanted) in center.iter().zip([1.0, 2.0, 3.0]) {
+        assert!((x - wanted).abs() < 5e-3, "{center:?}");
     }
-    // Its long axis points up.
+    // The long axis points up.
     assert!(
         bounds[1][1] - bounds[1][0] > 1.0 && bounds[0][1] - bounds[0][0] < 0.45,
         "{bounds:?}"
     );
 }
 
-/// A shape cut off at the domain counts what is left.
+/// The expected number of particles of a shape that the domain cuts off is that of its part inside.
 #[test]
 fn cut_shapes_are_counted() {
     let text = |shape: &str| {
@@ -175,7 +176,7 @@ fn cut_shapes_are_counted() {
     }
 }
 
-/// What fits into the domain is not said to be cut off: bounds of turned shapes are tight.
+/// Turned shapes that fit into the domain cause no warning that they are cut off: their bounds are tight.
 #[test]
 fn turned_shapes_are_not_cut_off() {
     for (dimension, shape) in [

@@ -1,4 +1,4 @@
-//! docs/tutorial.md: its scenes run, and what it shows of errors and figures is what one gets.
+//! docs/tutorial.md: its scenes run, and its error messages and figures are those of the program.
 
 use lahar::Isa;
 use lahar_io::scene::Scene;
@@ -6,10 +6,10 @@ use lahar_io::scene::Scene;
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tutorial.md");
 
 fn page() -> String {
-    std::fs::read_to_string(PAGE).expect("the tutorial is there")
+    std::fs::read_to_string(PAGE).expect("docs/tutorial.md")
 }
 
-/// Its blocks of TOML.
+/// Returns the blocks of TOML on a page.
 fn scenes(page: &str) -> Vec<&str> {
     page.split("```toml\n")
         .skip(1)
@@ -18,7 +18,7 @@ fn scenes(page: &str) -> Vec<&str> {
 }
 
 #[test]
-fn its_scenes_run_without_warnings() {
+fn scenes_run_without_warnings() {
     let page = page();
     assert_eq!(scenes(&page).len(), 5);
     for text in scenes(&page) {
@@ -35,7 +35,7 @@ fn its_scenes_run_without_warnings() {
 }
 
 #[test]
-fn the_error_is_the_one_shown() {
+fn the_error_message_is_the_one_shown() {
     let page = page();
     let text = scenes(&page)[0].replace("shape =", "shpe =");
     let error = Scene::parse(&text, "my.toml", &[]).unwrap_err();
@@ -45,9 +45,9 @@ fn the_error_is_the_one_shown() {
 }
 
 #[test]
-fn the_first_scene_has_as_many_particles_as_it_says() {
+fn the_first_scene_has_the_number_of_particles_shown() {
     let page = page();
-    let scene = Scene::parse(scenes(&page)[0], "my.toml", &[]).expect("it is a scene");
+    let scene = Scene::parse(scenes(&page)[0], "my.toml", &[]).expect("a good scene");
     let built = scene.build(Isa::Portable).expect("it builds");
     let count = built.simulation.particle_count();
     assert!(
@@ -56,14 +56,14 @@ fn the_first_scene_has_as_many_particles_as_it_says() {
     );
 }
 
-/// The lines that it tells to replace are in the example, and the names that it uses exist.
+/// The lines that the tutorial replaces are in the example, and the names that it uses exist.
 #[test]
-fn the_law_is_the_examples() {
+fn the_law_is_that_of_the_example() {
     let example = concat!(
         env!("CARGO_MANIFEST_DIR"),
         "/../lahar/examples/custom_material.rs"
     );
-    let example = std::fs::read_to_string(example).expect("the example is there");
+    let example = std::fs::read_to_string(example).expect("the example");
     assert!(example.contains("let rate = gradient + gradient.transpose();\n"));
     assert!(example.contains("struct KelvinVoigt"));
     let page = page();

@@ -1,11 +1,12 @@
-//! Water as scenes make it: a tank at rest stays as it is, and a tank that sloshes keeps its volume.
+//! Water in scenes: a tank at rest stays at rest, and a tank that sloshes keeps its volume.
 
+use crate::support::parse;
 use lahar::{Command, Diagnostics, Field, Isa, Simulate};
 use lahar_io::scene::Scene;
 
 const G: f64 = 9.81; // m/s²
 
-/// A tank 1 m wide, filled with water .5 m deep that moves sideways at `velocity` \[m/s\].
+/// Builds a tank 1 m wide, filled with water 0.5 m deep that moves sideways at `velocity` \[m/s\].
 fn tank(extra_material: &str, extra_body: &str, velocity: f64) -> Box<dyn Simulate> {
     let scene = scene(extra_material, extra_body, velocity, &[]);
     scene.build(Isa::detect()).expect("it builds").simulation
@@ -39,14 +40,10 @@ fn scene(extra_material: &str, extra_body: &str, velocity: f64, changes: &[(&str
         {extra_body}
         "#
     );
-    let changes: Vec<(String, String)> = changes
-        .iter()
-        .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
-        .collect();
-    Scene::parse(&text, "tank.toml", &changes).expect("a good scene")
+    parse(&text, changes)
 }
 
-/// Rows of diagnostics every half second for `seconds`.
+/// Returns diagnostics every half second for `seconds`.
 fn rows(mut simulation: Box<dyn Simulate>, seconds: f64) -> Vec<Diagnostics> {
     let mut rows = vec![simulation.diagnostics()];
     for frame in 1..=(2.0 * seconds) as usize {
@@ -58,7 +55,7 @@ fn rows(mut simulation: Box<dyn Simulate>, seconds: f64) -> Vec<Diagnostics> {
     rows
 }
 
-/// Largest change of `of` from the start, relative.
+/// Returns the largest relative change of a total from its start.
 fn drift(rows: &[Diagnostics], of: impl Fn(&Diagnostics) -> f64) -> f64 {
     let start = of(&rows[0]);
     rows.iter()
@@ -67,14 +64,14 @@ fn drift(rows: &[Diagnostics], of: impl Fn(&Diagnostics) -> f64) -> f64 {
 }
 
 #[test]
-fn a_tank_at_rest_stays_as_it_is() {
+fn a_tank_at_rest_stays_at_rest() {
     let speed = (G * 0.5_f64).sqrt();
     let lattice = rows(tank("", "sampling = \"lattice\"", 0.0), 2.0);
     assert!(drift(&lattice, |row| row.potential_energy) < 1e-5);
     assert!(drift(&lattice, |row| row.volume) < 1e-4);
     assert!(lattice.iter().all(|row| row.max_speed < 1e-4 * speed));
 
-    // Ten cells deep: particles put down at random settle by a part of a cell.
+    // Ten cells deep, jittered particles settle by a part of a cell.
     let jittered = rows(tank("", "", 0.0), 2.0);
     assert!(drift(&jittered, |row| row.potential_energy) < 2e-3);
     assert!(drift(&jittered, |row| row.volume) < 4e-3);
@@ -85,7 +82,7 @@ fn a_tank_at_rest_stays_as_it_is() {
     };
     assert!(
         stirred(&alike) > 2.0 * stirred(&jittered),
-        "even volumes must tell: {} {}",
+        "measured volumes must make a difference: {} {}",
         stirred(&alike),
         stirred(&jittered)
     );
@@ -109,8 +106,8 @@ fn a_slosh_keeps_its_volume_and_never_gains_energy() {
     assert!(corrected.iter().all(|row| row.mass == mass));
 }
 
-/// When gravity is changed on the way, water of the default speed of sound gets stiffer: pressures stay
-/// as they are at that moment, and afterwards it is not compressed more than before.
+/// When gravity grows during a run, water with the default speed of sound gets stiffer: pressures stay the same at that
+/// moment, and the water is not compressed more than before.
 #[test]
 fn automatic_stiffness_follows_gravity() {
     let automatic = [
@@ -141,9 +138,9 @@ fn automatic_stiffness_follows_gravity() {
     close(under([0.0, -4.0 * G, 0.0]), 4.0 * G * 0.5);
     close(under([G, 0.0, 0.0]), G * 1.0); // through the whole tank
     close(under([0.0, G, 0.0]), G * 1.0);
-    close(under([0.0, -0.1 * G, 0.0]), G * 0.5); // never softer than at the start
+    close(under([0.0, -0.1 * G, 0.0]), G * 0.5); // not softer than at the start
 
-    // A state with pressures of all sizes.
+    // A state with a range of pressures.
     let start = |scene: &Scene| {
         let mut simulation = scene.build(Isa::detect()).expect("it builds").simulation;
         simulation.advance_to(0.2).expect("at rest");
@@ -184,7 +181,7 @@ fn automatic_stiffness_follows_gravity() {
     assert!(followed < 0.02, "{followed}");
     assert!(stayed > 3.0 * followed, "{stayed} {followed}");
 
-    // A step of fixed length is chosen for the speeds of sound at the start.
+    // A fixed dt is chosen for the speeds of sound at the start, so these stay.
     scene = self::scene("", "", 0.0, &[automatic[0], ("dt", "1e-4")]);
     assert_eq!(scene.sound_speeds().under(gravity), []);
 }

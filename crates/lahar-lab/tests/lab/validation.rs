@@ -1,18 +1,18 @@
-//! The physics cases that take seconds, held to their targets: what misses is listed in docs/known-misses.md, and what
-//! is listed there misses.
+//! The physics cases that take seconds: each finding meets its target, or misses it and is listed in
+//! docs/known-misses.md.
 
 use std::collections::BTreeSet;
 
 use lahar::Isa;
 use lahar_lab::validate::{self, Options};
 
-/// Cases that take seconds at their coarser resolution; the others wait for `lahar validate`.
+/// Cases that take seconds at their coarser resolution. The others run by `lahar validate` only.
 const FAST: [&str; 18] = [
     "K1", "K2", "K3", "K4", "K5", "K6", "K7", "K8", "E1", "E4", "F1", "F2", "F3", "F4", "F6", "F7",
     "F8", "D1",
 ];
 
-/// The rows of the list that are found by `lahar validate`: (case, quantity).
+/// Returns the listed misses of `lahar validate`: (case, quantity).
 fn known_misses() -> BTreeSet<(String, String)> {
     let text = include_str!("../../../../docs/known-misses.md");
     let (_, list) = text
@@ -63,10 +63,9 @@ fn fast_cases_meet_their_targets_or_are_known_to_miss() {
     assert_eq!(wrong, [] as [String; 0]);
 }
 
-/// A time step that is too long fails frames; they are tried again with a shorter one, as by `lahar run`, and the report
-/// tells.
+/// Frames that fail because the time step is too long are retried with a shorter one, as by `lahar run`, and reported.
 #[test]
-fn frames_that_fail_are_tried_again() {
+fn frames_that_fail_are_retried() {
     let [case] = validate::find("E1")[..] else {
         panic!("E1 is one case");
     };
@@ -82,20 +81,20 @@ fn frames_that_fail_are_tried_again() {
     assert_eq!(outcome.failure, None);
     assert!(!outcome.findings.is_empty());
     let again = |run: &&String| run.contains("frame_rate=0.5: the frame from t = ");
-    let told = outcome.runs.iter().filter(again).count();
-    assert!(told > 0, "{:?}", outcome.runs);
+    let retries = outcome.runs.iter().filter(again).count();
+    assert!(retries > 0, "{:?}", outcome.runs);
 }
 
-/// What is listed is a quantity of a case: none has been renamed.
+/// Every case on the list of misses exists.
 #[test]
-fn the_list_names_cases() {
+fn listed_misses_name_cases() {
     let known = known_misses();
     for (case, _) in &known {
         assert_eq!(validate::find(case).len(), 1, "{case}");
     }
 }
 
-/// A case is found by its name in any letters, all that run a scene by the scene, or a file of its name.
+/// A case is found by its name in upper or lower case; a scene or a file of its name finds all cases that run it.
 #[test]
 fn cases_are_found() {
     let found =
