@@ -1,9 +1,9 @@
 //! Where scenes come from: the window knows them by name and gets a simulation that is ready to run.
 
-use lahar::Simulate;
+use lahar_io::driver::Driver;
 use lahar_io::image::Picture;
 use lahar_io::output::Recording;
-use lahar_io::scene::{ColliderInfo, Controls, SoundSpeeds};
+use lahar_io::scene::{ColliderInfo, Controls};
 
 use crate::colour::ColourBy;
 
@@ -62,8 +62,6 @@ pub struct Facts {
     pub colliders: Vec<ColliderInfo>,
     /// Gravity at the start \[m/s²\].
     pub gravity: [f64; 3],
-    /// What follows when it is changed; `None`: nothing.
-    pub sound_speeds: Option<SoundSpeeds>,
     /// Frames per simulated second \[1/s\].
     pub frame_rate: f64,
     /// Frames of a recording; `None`: it is simulated.
@@ -97,7 +95,7 @@ pub struct Stage {
 /// What moves.
 pub enum Footage {
     /// A simulation at its start.
-    Simulation(Box<dyn Simulate>),
+    Simulation(Box<Driver>),
     /// A finished run.
     Recording(Box<Recording>),
 }

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use lahar::{Field, Isa};
 use lahar_io::builtin;
+use lahar_io::driver::Driver;
 use lahar_io::image::{Picture, Renderer, Scenery, Style, body_colour};
 use lahar_io::output::Recording;
 use lahar_io::scene::{Controls, Scene, colliders_of};
@@ -75,7 +76,6 @@ impl SceneSource for Shelf {
             domain: simulation.domain(),
             colliders: scene.colliders.clone(),
             gravity: simulation.gravity(),
-            sound_speeds: Some(scene.sound_speeds()),
             frame_rate: scene.frame_rate,
             frames: None,
             swatches,
@@ -89,16 +89,17 @@ impl SceneSource for Shelf {
         };
         Ok(Stage {
             facts,
-            footage: Footage::Simulation(simulation),
+            footage: Footage::Simulation(Box::new(Driver::of_scene(&scene, simulation))),
         })
     }
 
     fn thumbnail(&self, name: &str, [width, height]: [u32; 2]) -> Option<Picture> {
         let Stage { facts, footage } = self.open(name, &vec![]).ok()?;
-        let Footage::Simulation(simulation) = footage else {
+        let Footage::Simulation(driver) = footage else {
             return None;
         };
-        let mut scenery = Scenery::of(simulation.as_ref(), &[]).with_colliders(&facts.colliders);
+        let simulation = driver.simulation();
+        let mut scenery = Scenery::of(simulation, &[]).with_colliders(&facts.colliders);
         scenery.colours = palette(&facts.swatches)
             .iter()
             .map(|colour| [colour.r(), colour.g(), colour.b()])
@@ -148,7 +149,6 @@ pub(crate) fn recorded(recording: &Recording, scene: &Value) -> Facts {
         domain: corner("min").zip(corner("max")),
         colliders: colliders_of(scene),
         gravity: vector(&scene["gravity"]).unwrap_or_default(),
-        sound_speeds: None,
         frame_rate: (scene["computed"]["frame_rate"].as_f64()).unwrap_or(DEFAULT_FRAME_RATE),
         frames: Some(recording.len()),
         swatches,

@@ -12,6 +12,7 @@ mod clock;
 mod compare;
 mod completions;
 mod error;
+mod frame_loop;
 mod interrupt;
 mod list;
 #[cfg(feature = "mesh")]

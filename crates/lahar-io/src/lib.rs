@@ -3,6 +3,7 @@
 mod after_error;
 pub mod builtin;
 pub mod checkpoint;
+pub mod driver;
 pub mod error;
 mod even;
 pub mod export;

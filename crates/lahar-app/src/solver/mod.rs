@@ -181,12 +181,13 @@ impl Solver {
     }
 }
 
-fn mistake(panic: &(dyn std::any::Any + Send)) -> String {
-    let what = panic_message(panic);
-    format!("a mistake in lahar itself, please report it: {what}")
+/// A panic as the window tells it.
+fn panic_report(panic: &(dyn std::any::Any + Send)) -> String {
+    let message = panic_message(panic);
+    format!("a mistake in lahar itself, please report it: {message}")
 }
 
-/// What a panic said.
+/// The message of a panic.
 pub(crate) fn panic_message(panic: &(dyn std::any::Any + Send)) -> &str {
     panic
         .downcast_ref::<String>()

@@ -11,7 +11,7 @@ use triple_buffer::Input;
 use super::clock::{Clock, Rate};
 use super::live::{Live, Runner};
 use super::replay::Replay;
-use super::{ALWAYS, Condition, News, Order, Shown, Wanted, mistake};
+use super::{ALWAYS, Condition, News, Order, Shown, Wanted, panic_report};
 use crate::scenes::{Footage, SceneSource, Stage};
 
 /// Snapshots are not taken more often than this, unless the window waits for one.
@@ -154,7 +154,7 @@ impl Worker {
         self.shown.condition = Condition::Opening;
         self.publish(); // the old particles stay in sight while the new ones are seeded
         let opened = catch_unwind(AssertUnwindSafe(|| stages(&*self.source, &wanted)))
-            .unwrap_or_else(|panic| Err(mistake(&*panic)))
+            .unwrap_or_else(|panic| Err(panic_report(&*panic)))
             .and_then(|stages| self.begin(stages));
         if let Err(why) = opened {
             self.fail(why);
@@ -168,12 +168,9 @@ impl Worker {
         let mut facts = None;
         let mut replay = None;
         for (title, stage) in stages {
-            let sound_speeds = stage.facts.sound_speeds.clone();
             facts.get_or_insert(stage.facts);
             match stage.footage {
-                Footage::Simulation(simulation) => {
-                    simulations.push(Runner::new(title, simulation, sound_speeds))
-                }
+                Footage::Simulation(driver) => simulations.push(Runner::new(title, *driver)),
                 Footage::Recording(recording) => replay = Some(Replay::new(*recording)?),
             }
         }
@@ -248,7 +245,7 @@ impl Worker {
     fn work(&mut self) {
         let done = match &mut self.play {
             Play::Nothing => return,
-            Play::Live(live) => live.work(),
+            Play::Live(live) => live.advance(),
             Play::Replay(replay) => replay.advance().map(|()| true),
         };
         self.changed = true;

@@ -5,18 +5,20 @@ use lahar::Field;
 use lahar_app::scenes::{Footage, Setting};
 use lahar_app::shelf::Shelf;
 use lahar_app::solver::Condition;
+use lahar_io::driver::Driver;
 
 /// A scene, to be run without a window.
-fn simulation(source: &dyn SceneSource, scene: &str) -> Box<dyn lahar::Simulate> {
+fn driver(source: &dyn SceneSource, scene: &str) -> Driver {
     match source.open(scene, &vec![]).unwrap().footage {
-        Footage::Simulation(simulation) => simulation,
+        Footage::Simulation(driver) => *driver,
         Footage::Recording(_) => panic!("{scene} is a recording"),
     }
 }
 
 #[test]
 fn a_scene_left_alone_has_the_same_bits_as_a_headless_run() {
-    let mut headless = simulation(&support::Blocks, "dam-break");
+    let mut driver = driver(&support::Blocks, "dam-break");
+    let headless = driver.simulation_mut();
     let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
     solver.order(Order::Fields(vec![Field::Velocity]));
     solver.order(Order::Speed(8.0));

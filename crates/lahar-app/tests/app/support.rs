@@ -9,6 +9,7 @@ use lahar_app::scenes::{
     Angle, Changes, Facts, Footage, Look, SceneCard, SceneSource, Setting, SettingValue, Stage,
     Swatch,
 };
+use lahar_io::driver::{Driver, FrameEnd, Schedule};
 use lahar_io::scene::Controls;
 
 /// Two blocks of water in 2D, one in 3D, and a scene that cannot be opened.
@@ -58,7 +59,6 @@ impl SceneSource for Blocks {
             domain: simulation.domain(),
             colliders: vec![],
             gravity: simulation.gravity(),
-            sound_speeds: None,
             frame_rate: 60.0,
             frames: None,
             swatches: vec![Swatch {
@@ -107,7 +107,10 @@ impl SceneSource for Blocks {
         };
         Ok(Stage {
             facts,
-            footage: Footage::Simulation(simulation),
+            footage: Footage::Simulation(Box::new(Driver::new(
+                simulation,
+                Schedule::new(FrameEnd::Rate(60.0)),
+            ))),
         })
     }
 }
