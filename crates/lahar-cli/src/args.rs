@@ -1,4 +1,4 @@
-//! What may be written on the command line.
+//! The grammar of the command line: every command with its options, and the help texts.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -9,19 +9,20 @@ use lahar_io::scene::Comparison;
 
 use crate::recorded_frames::Frames;
 
-/// Fluids, and the solids they meet, simulated by the Moving Least Squares Material Point Method.
+/// Simulates fluids, and the solids they meet, with the Moving Least Squares Material Point Method
 ///
-/// Without a command a window opens on the default scene; without a display the same scene runs and leaves a film.
+/// Without a command, a window opens on the default scene. Without a display, the same scene runs without a window and
+/// leaves a film.
 #[derive(Debug, Parser)]
 #[command(name = "lahar", version, max_term_width = 100)]
 pub(crate) struct Args {
-    /// What to do; nothing: open the window on the default scene.
+    /// The command; without one, the window opens on the default scene.
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
 }
 
 impl Args {
-    /// Whether standard output is to hold one JSON document.
+    /// Returns true if standard output must be one JSON document.
     pub(crate) fn wants_json(&self) -> bool {
         match &self.command {
             Some(Command::Run(run)) => run.json,
@@ -35,79 +36,79 @@ impl Args {
     }
 }
 
-/// The commands.
+/// A command and its options.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Open the window on a scene
+    /// Open the window on a scene, or replay a finished run
     View(View),
-    /// Run a scene without a window and write what it comes to
+    /// Run a scene without a window, and write its frames into a folder
     Run(Run),
-    /// Go on with a run that was interrupted, killed or failed, as if it had not been
+    /// Continue a run that was interrupted, killed or failed, with the same result as an unbroken run
     Resume(Resume),
     /// List the built-in scenes
     List(List),
-    /// Show what a scene comes to: particles, nodes, memory, sound speed, time step and what limits it
+    /// Show a scene's size and cost: particles, nodes, memory, sound speed, time step and what limits it
     Show(Show),
-    /// Write a commented scene to start from
+    /// Write a scene file to start from
     New(New),
-    /// Make surface meshes of a 3D run's particles, by material
+    /// Make surface meshes of a 3D run, one per material and frame
     #[cfg(feature = "mesh")]
     Mesh(Mesh),
-    /// Draw a run's frames: pictures, and a film
+    /// Draw the frames of a run as pictures, and as a film
     Render(Render),
-    /// Write a page of HTML that tells how a run went, with pictures and plots in it
+    /// Write one HTML page about a run, with its pictures and plots
     Report(Report),
-    /// Plot what runs have measured over time: energies, momenta, volume, speed, time step, probes
+    /// Plot the measurements of runs over time: energies, momenta, volume, speed, time step, probes
     Plot(Plot),
-    /// Run physics cases and compare with exact solutions, experiments and other programs
+    /// Run physics cases, and compare with exact solutions, experiments and other programs
     Validate(Validate),
-    /// Measure how fast scenes are computed
+    /// Measure how fast this machine computes scenes
     Bench(Bench),
     /// Print the JSON schema of scene files, for editors
     Schema,
-    /// Print completions for a shell
+    /// Print a script that completes commands in a shell
     Completions(Completions),
 }
 
 /// Options of `view`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct View {
-    /// A built-in scene's name, a scene file, or a run's folder, which is replayed
+    /// A built-in scene's name, a scene file, or the folder of a run to replay
     #[arg(value_name = "SCENE|RUN")]
-    pub(crate) what: String,
+    pub(crate) scene_or_run: String,
 
-    /// Set a key of the scene, as in `--set gravity=[0,-1.62]` or `--set bodies.column.velocity=[1,0]`
+    /// Set a key of the scene, as in --set dx=0.01 or --set 'bodies.column.velocity=[1,0]'; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
 
-    /// Run the scene with several values of a key, side by side, as in `--compare transfer=pic,apic`
+    /// Run the scene with several values of a key, side by side, as in --compare transfer=pic,apic
     #[arg(long, value_name = "KEY=A,B")]
     pub(crate) compare: Option<Comparison>,
 
-    /// The instruction set to compute with; the widest of this machine if not given
+    /// Instruction set [default: the widest of this machine]
     #[arg(long, value_name = "SET", value_parser = isa)]
     pub(crate) isa: Option<Isa>,
 
-    /// Threads to compute with; all of this machine if not given
+    /// Number of threads [default: all of this machine]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 
-    /// Print a line a second on standard error: how fast it computes and draws
+    /// Print the rates of computing and drawing on standard error, once per second
     #[arg(long)]
     pub(crate) trace: bool,
 }
 
-/// The scene and what is laid over it.
+/// A scene, the keys that are changed in it, and the instruction set.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct SceneArgs {
     /// A built-in scene's name (see `lahar list`) or a scene file
     pub(crate) scene: String,
 
-    /// Set a key of the scene, as in `--set gravity=[0,-1.62]` or `--set bodies.column.velocity=[1,0]`
+    /// Set a key of the scene, as in --set dx=0.01 or --set 'bodies.column.velocity=[1,0]'; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
 
-    /// The instruction set to compute with; the widest of this machine if not given
+    /// Instruction set [default: the widest of this machine]
     #[arg(long, value_name = "SET", value_parser = isa)]
     pub(crate) isa: Option<Isa>,
 }
@@ -118,48 +119,49 @@ pub(crate) struct Run {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// The folder to write; out/SCENE, numbered if taken, if not given
+    /// Folder to write [default: out/SCENE, numbered if it exists]
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 
-    /// Replace the run that is in the folder
+    /// Replace the run in the folder given by --output
     #[arg(long, requires = "output")]
     pub(crate) overwrite: bool,
 
-    /// Write frame 0 and so many more
+    /// Number of frames to write after frame 0 [default: the scene's duration]
     #[arg(long, value_name = "N", conflicts_with = "until")]
     pub(crate) frames: Option<u64>,
 
-    /// Run to this simulated time in seconds, to the end of the frame it is in
+    /// Simulated time to run to, in seconds; the frame that contains it is finished
     #[arg(long, value_name = "T", value_parser = positive)]
     pub(crate) until: Option<f64>,
 
-    /// Threads to compute with; all of this machine if not given
+    /// Number of threads [default: all of this machine]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 
-    /// What to write of a frame: particles as npz, vtk, ply or bgeo, png, gif (a film of all), or none; the scene's choice if not given
+    /// Output formats: npz, vtk, ply, bgeo (particles of each frame), png (a picture of each frame), gif (a film), or
+    /// none [default: the scene's choice]
     #[arg(long, value_name = "FORMATS", value_delimiter = ',')]
     pub(crate) format: Option<Vec<String>>,
 
-    /// Make a film of the run (video.gif), whatever the formats
+    /// Also make a film of the run (video.gif)
     #[arg(long)]
     pub(crate) video: bool,
 
-    /// Keep a picture of every frame (images/000000.png), whatever the formats
+    /// Also write a picture of every frame (images/000000.png)
     #[arg(long)]
     pub(crate) images: bool,
 
-    /// Run the scene once for each of several values of a key, and put pictures and plots side by side, as in
-    /// `--compare transfer=pic,flip,apic`
+    /// Run the scene once per value of a key, and put the pictures and plots side by side, as in
+    /// --compare transfer=pic,flip,apic
     #[arg(long, value_name = "KEY=A,B", conflicts_with_all = ["dry_run", "json"])]
     pub(crate) compare: Option<Comparison>,
 
-    /// Check everything and say what would be done, without doing it
+    /// Check everything and print what would be done, but write nothing
     #[arg(long)]
     pub(crate) dry_run: bool,
 
-    /// Print the report as one JSON document on standard output
+    /// Print the result as one JSON document on standard output
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -167,27 +169,27 @@ pub(crate) struct Run {
 /// Options of `resume`.
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct Resume {
-    /// The folder of the run
+    /// Folder of the run
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
 
-    /// Go on to frame N, beyond the run's own end
+    /// Continue to frame N, even beyond the end that the run was started with
     #[arg(long, value_name = "N", conflicts_with = "until")]
     pub(crate) frames: Option<u64>,
 
-    /// Go on to this simulated time in seconds, beyond the run's own end
+    /// Continue to this simulated time in seconds, even beyond the end that the run was started with
     #[arg(long, value_name = "T", value_parser = positive)]
     pub(crate) until: Option<f64>,
 
-    /// Threads to compute with; all of this machine if not given. The bits are the same
+    /// Number of threads; it does not change the result [default: all of this machine]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 
-    /// Go on with another instruction set than the run began with; the bits are others then
+    /// Instruction set; another one rounds differently [default: the one that the run was started with]
     #[arg(long, value_name = "SET", value_parser = isa)]
     pub(crate) isa: Option<Isa>,
 
-    /// Print the report as one JSON document on standard output
+    /// Print the result as one JSON document on standard output
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -206,6 +208,10 @@ pub(crate) struct Show {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
+    /// Print the text of the scene file instead, which can be edited and run
+    #[arg(long, conflicts_with_all = ["set", "isa", "json"])]
+    pub(crate) toml: bool,
+
     /// Print one JSON document
     #[arg(long)]
     pub(crate) json: bool,
@@ -214,23 +220,23 @@ pub(crate) struct Show {
 /// Options of `new`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct New {
-    /// The file to write, like my.toml; one that is there is left alone
+    /// File to write, like my.toml; an existing file is never overwritten
     #[arg(value_name = "FILE")]
     pub(crate) file: PathBuf,
+
+    /// Built-in scene to copy (see `lahar list`), with the files that it names [default: a commented dam break]
+    #[arg(long, value_name = "SCENE")]
+    pub(crate) from: Option<String>,
 }
 
-/// Frames of a run, and where what is made of them goes: what `mesh` and `render` have in common.
+/// A run, and the frames of it to work on: the options that `mesh` and `render` have in common.
 #[derive(Debug, Default, clap::Args)]
-pub(crate) struct Recorded {
-    /// A folder that `lahar run` has written with npz frames; it need not have come to its end
+pub(crate) struct RecordedArgs {
+    /// Folder of a run with npz frames; the run need not be finished
     #[arg(value_name = "DIR")]
     pub(crate) run: PathBuf,
 
-    /// The folder to write; meshes/ or render/ in the run's folder if not given
-    #[arg(short, long, value_name = "DIR")]
-    pub(crate) output: Option<PathBuf>,
-
-    /// The frames, by number: 12, 0..60, 0..60:5 (every fifth) or 10..; all if not given
+    /// Frames by number: 12, 0..60, 0..60:5 (every fifth) or 10.. [default: all]
     #[arg(
         long,
         value_name = "FRAMES",
@@ -245,13 +251,17 @@ pub(crate) struct Recorded {
 #[derive(Debug, clap::Args)]
 pub(crate) struct Mesh {
     #[command(flatten)]
-    pub(crate) recorded: Recorded,
+    pub(crate) recorded: RecordedArgs,
 
-    /// The materials; all if not given
+    /// Folder to write [default: meshes/ in the run's folder]
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Materials to mesh, by name [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) materials: Vec<String>,
 
-    /// What to write of each: ply, obj, vtk
+    /// Mesh formats: ply, obj, vtk
     #[arg(
         long,
         value_name = "FORMATS",
@@ -260,11 +270,11 @@ pub(crate) struct Mesh {
     )]
     pub(crate) format: Vec<String>,
 
-    /// Passes of smoothing; 0: as it is cut, with steps
+    /// Number of smoothing passes; 0 leaves the surface as it is cut from the cubes
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(0..=1000))]
     pub(crate) smoothing: u32,
 
-    /// Edge of the cubes that the surface is cut from, in spacings of particles: smaller is finer
+    /// Edge of the cubes that the surface is cut from, in particle spacings; smaller is finer
     #[arg(long, value_name = "SIZE", default_value = "0.5", value_parser = positive)]
     pub(crate) cube: f64,
 }
@@ -273,51 +283,54 @@ pub(crate) struct Mesh {
 #[derive(Debug, Default, clap::Args)]
 pub(crate) struct Render {
     #[command(flatten)]
-    pub(crate) recorded: Recorded,
+    pub(crate) recorded: RecordedArgs,
 
-    /// Make a film, too: video.gif, and video.mp4 where ffmpeg is installed or the program was built with the feature mp4
+    /// Folder to write [default: render/ in the run's folder]
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: Option<PathBuf>,
+
+    /// Also make a film: video.gif, and video.mp4 if ffmpeg is installed or lahar was built with the feature mp4
     #[arg(long)]
     pub(crate) video: bool,
 
-    /// Keep no pictures: the film only
+    /// Write the film only, without a picture of each frame
     #[arg(long, requires = "video")]
     pub(crate) no_images: bool,
 
-    /// Width and height in pixels; the scene's choice if not given
+    /// Width and height in pixels [default: the scene's choice]
     #[arg(long, value_name = "WIDTHxHEIGHT")]
     pub(crate) size: Option<Size>,
 
-    /// From the scene to the camera, in 3D, as in `--camera 1,0.5,2`; more by `--set camera.KEY=VALUE`
+    /// Direction from the scene to the camera in 3D, as in --camera 1,0.5,2
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
     pub(crate) camera: Option<String>,
 
-    /// What colours mean: material, body, speed, pressure, density, J
-    #[arg(long, value_name = "WHAT")]
+    /// Quantity that colors show: material, body, speed, pressure, density, J [default: the scene's choice]
+    #[arg(long, value_name = "QUANTITY")]
     pub(crate) color_by: Option<String>,
 
-    /// What draws: the window's renderer, on a graphics adapter or one in software (no display is needed), or the
-    /// processor; auto: the window's where that works
-    #[arg(long, value_name = "WHICH", value_enum, default_value_t)]
+    /// Program part that draws
+    #[arg(long, value_name = "RENDERER", value_enum, default_value_t)]
     pub(crate) renderer: Renderer,
 
-    /// Set a key of the scene, as in `--set camera.height=2`
+    /// Set a key of the scene, as in --set camera.height=2; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
 }
 
-/// What draws pictures.
+/// The program part that draws pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Renderer {
-    /// The window's renderer where that works, else the processor
+    /// Use gpu if it works, otherwise cpu
     #[default]
     Auto,
-    /// The window's renderer
+    /// Draw as the window does, on a graphics adapter or its software emulation; needs no display
     Gpu,
-    /// The processor
+    /// Draw smooth surfaces on the processor
     Cpu,
 }
 
-/// Pixels.
+/// Width and height of a picture \[pixels\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Size(pub(crate) [u32; 2]);
 
@@ -333,18 +346,18 @@ impl FromStr for Size {
         };
         text.split_once(['x', 'X', '×'])
             .and_then(|(width, height)| Some(Self([side(width)?, side(height)?])))
-            .ok_or_else(|| "write it as 1280x720, each from 16 to 16384".to_owned())
+            .ok_or_else(|| "expected WIDTHxHEIGHT like 1280x720, each from 16 to 16384".to_owned())
     }
 }
 
 /// Options of `report`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Report {
-    /// A folder that `lahar run` has written
+    /// Folder of a run
     #[arg(value_name = "DIR")]
     pub(crate) run: PathBuf,
 
-    /// The file to write; report.html in the run's folder if not given
+    /// File to write [default: report.html in the run's folder]
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
 }
@@ -352,11 +365,11 @@ pub(crate) struct Report {
 /// Options of `plot`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Plot {
-    /// Folders that `lahar run` has written; several are drawn into the same plots
+    /// Folders of runs; several runs share the same plots
     #[arg(required = true, value_name = "DIR")]
     pub(crate) runs: Vec<PathBuf>,
 
-    /// The folder to write; plots/ in the run's folder if not given, and there is one run
+    /// Folder to write; required for several runs [default: plots/ in the run's folder]
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 }
@@ -364,36 +377,36 @@ pub(crate) struct Plot {
 /// Options of `validate`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Validate {
-    /// Cases by name (K1, F5, D1, ..) or by their scene; a file is run in place of the built-in scene of its name.
-    /// All but the long ones if none is given
+    /// Cases by name (K1, F5, D1, ...) or by scene; a scene file replaces the built-in scene with the same name
+    /// [default: all but the long cases]
     #[arg(value_name = "CASE|SCENE")]
     pub(crate) cases: Vec<String>,
 
-    /// The coarser resolutions only: all in under two minutes
+    /// Run only the coarser resolutions: all cases in a few minutes
     #[arg(long)]
     pub(crate) quick: bool,
 
-    /// The cases that take long, too
+    /// Also run the cases that take long
     #[arg(long)]
     pub(crate) long: bool,
 
-    /// Set a key of the cases' scenes, as in `--set transfer=flip`; the cases' own settings come first
+    /// Set a key of the cases' scenes, as in --set transfer=flip, even where a case sets it; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
 
-    /// The folder for validation.md and its plots; out/validate if not given
+    /// Folder for validation.md and its plots [default: out/validate]
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
 
-    /// The instruction set to compute with; the widest of this machine if not given
+    /// Instruction set [default: the widest of this machine]
     #[arg(long, value_name = "SET", value_parser = isa)]
     pub(crate) isa: Option<Isa>,
 
-    /// Threads to compute with; all of this machine if not given
+    /// Number of threads [default: all of this machine]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
 
-    /// Print the findings as one JSON document on standard output
+    /// Print the results as one JSON document on standard output
     #[arg(long)]
     pub(crate) json: bool,
 }
@@ -401,37 +414,37 @@ pub(crate) struct Validate {
 /// Options of `bench`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Bench {
-    /// What to measure: dam-3d, dam-2d, jelly-3d, snow-3d, dam-3d-f64, dam-3d-portable; all if not given, dam-3d with
-    /// --growth
+    /// Cases to measure: dam-3d, dam-2d, jelly-3d, snow-3d, dam-3d-f64, dam-3d-portable [default: all; with --growth:
+    /// dam-3d]
     #[arg(long = "case", value_name = "CASES", value_delimiter = ',')]
     pub(crate) cases: Vec<String>,
 
-    /// About so many particles in place of the scenes' million
+    /// Approximate number of particles [default: a million]
     #[arg(long, value_name = "N", value_parser = positive, conflicts_with = "growth")]
     pub(crate) particles: Option<f64>,
 
-    /// Threads to compute with, one after the other, as in `--threads 1,2`; all of this machine if not given
+    /// Numbers of threads to measure in turn, as in --threads 1,2 [default: all of this machine]
     #[arg(long, value_name = "N", value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Vec<u16>,
 
-    /// The instruction set to compute with; the widest of this machine if not given
+    /// Instruction set [default: the widest of this machine]
     #[arg(long, value_name = "SET", value_parser = isa)]
     pub(crate) isa: Option<Isa>,
 
-    /// Timed runs of each
+    /// Number of timed runs per case
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub(crate) runs: u16,
 
-    /// Show the ratios to what an earlier `bench --json` has printed
+    /// Show ratios to an earlier measurement: a file written by bench --json
     #[arg(long, value_name = "FILE")]
     pub(crate) compare: Option<PathBuf>,
 
-    /// How speed and memory grow: measure with each of these numbers of particles, and draw plots
+    /// Measure with each of these numbers of particles, and plot how speed and memory grow
     #[arg(long, value_name = "N,M", value_delimiter = ',', value_parser = positive, num_args = 0..=1,
           default_missing_value = "1e5,3e5,1e6,3e6,1e7", require_equals = true)]
     pub(crate) growth: Option<Vec<f64>>,
 
-    /// The folder for the plots of --growth; out/bench if not given
+    /// Folder for the plots of --growth [default: out/bench]
     #[arg(short, long, value_name = "DIR", requires = "growth")]
     pub(crate) output: Option<PathBuf>,
 
@@ -443,7 +456,7 @@ pub(crate) struct Bench {
 /// Options of `completions`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Completions {
-    /// The shell
+    /// Shell to complete commands in
     pub(crate) shell: clap_complete::Shell,
 }
 
@@ -452,7 +465,7 @@ fn assignment(text: &str) -> Result<(String, String), String> {
         Some((key, value)) if !key.trim().is_empty() => {
             Ok((key.trim().to_owned(), value.trim().to_owned()))
         }
-        _ => Err("write it as KEY=VALUE".to_owned()),
+        _ => Err("expected KEY=VALUE".to_owned()),
     }
 }
 
@@ -461,7 +474,7 @@ fn isa(text: &str) -> Result<Isa, String> {
     let isa = Isa::ALL
         .into_iter()
         .find(|isa| isa.name() == text)
-        .ok_or_else(|| format!("it is one of {}", names()))?;
+        .ok_or_else(|| format!("expected one of {}", names()))?;
     if isa.is_available() {
         Ok(isa)
     } else {
@@ -471,7 +484,7 @@ fn isa(text: &str) -> Result<Isa, String> {
             .map(Isa::name)
             .collect();
         Err(format!(
-            "this machine does not have it; it has {}",
+            "this machine does not support it; it supports {}",
             have.join(", ")
         ))
     }
@@ -481,7 +494,7 @@ fn positive(text: &str) -> Result<f64, String> {
     text.parse()
         .ok()
         .filter(|time: &f64| time.is_finite() && *time > 0.0)
-        .ok_or_else(|| "it is a number above 0".to_owned())
+        .ok_or_else(|| "expected a number above 0".to_owned())
 }
 
 #[cfg(test)]
@@ -492,6 +505,22 @@ mod tests {
     #[test]
     fn the_definitions_agree() {
         Args::command().debug_assert();
+    }
+
+    /// zsh expands unquoted brackets: an example that it would refuse stands in quotes.
+    #[test]
+    fn examples_in_help_texts_are_quoted() {
+        let mut command = Args::command();
+        for command in command.get_subcommands_mut() {
+            let help = command.render_long_help().to_string();
+            for example in help.split("--set ").skip(1) {
+                let word = example.split_whitespace().next().unwrap_or_default();
+                assert!(
+                    !word.contains(['[', '{']) || word.starts_with('\''),
+                    "{help}"
+                );
+            }
+        }
     }
 
     #[test]

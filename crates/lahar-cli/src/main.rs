@@ -75,7 +75,7 @@ fn execute(args: Args) -> Result<ExitCode, CliError> {
         Some(Command::Resume(args)) => resume::resume(&args),
         Some(Command::List(list)) => list::list(list.json),
         Some(Command::Show(show)) => show::show(&show),
-        Some(Command::New(args)) => new::new(&args.file),
+        Some(Command::New(args)) => new::new(&args),
         #[cfg(feature = "mesh")]
         Some(Command::Mesh(args)) => mesh::mesh(&args),
         Some(Command::Render(args)) => render::render(&args),

@@ -26,7 +26,7 @@ pub(crate) fn mesh(args: &args::Mesh) -> Result<ExitCode, CliError> {
         cube: args.cube,
         smoothing: args.smoothing,
     };
-    let folder = match &args.recorded.output {
+    let folder = match &args.output {
         Some(folder) => folder.clone(),
         None => recording.folder().join("meshes"),
     };

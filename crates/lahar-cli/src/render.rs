@@ -27,7 +27,7 @@ pub(crate) fn render(args: &args::Render) -> Result<ExitCode, CliError> {
         size: args.size.map_or(scene.output.picture_size, |size| size.0),
     };
     let mut painter = Painter::choose(args.renderer, &subject)?;
-    let folder = match &args.recorded.output {
+    let folder = match &args.output {
         Some(folder) => folder.clone(),
         None => recording.folder().join("render"),
     };

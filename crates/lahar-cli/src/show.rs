@@ -1,8 +1,9 @@
-//! `lahar show`: what a scene comes to, found by making it.
+//! `lahar show`: the size and cost of a scene, found by building its simulation; or the scene's text.
 
 use std::process::ExitCode;
 
 use lahar::Isa;
+use lahar_io::builtin;
 use lahar_io::scene::Scene;
 use serde_json::{Value, json};
 
@@ -12,6 +13,9 @@ use crate::progress::with_prefix;
 use crate::terminal;
 
 pub(crate) fn show(args: &args::Show) -> Result<ExitCode, CliError> {
+    if args.toml {
+        return print_toml(&args.scene.scene);
+    }
     let scene = Scene::load(&args.scene.scene, &args.scene.set)?;
     let value = describe(&scene, args.scene.isa.unwrap_or_else(Isa::detect))?;
     if args.json {
@@ -22,11 +26,20 @@ pub(crate) fn show(args: &args::Show) -> Result<ExitCode, CliError> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What the scene comes to.
+/// Prints the text of a built-in scene or of a scene file.
+fn print_toml(scene: &str) -> Result<ExitCode, CliError> {
+    match builtin::find(scene) {
+        Some(scene) => terminal::print(scene.text),
+        None => terminal::print(&Scene::load(scene, &[])?.text),
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Describes the scene and the simulation that it makes, as the JSON document of `lahar show --json`.
 pub(crate) fn describe(scene: &Scene, isa: Isa) -> Result<Value, CliError> {
     let built = scene.build(isa)?;
     let mut simulation = built.simulation;
-    simulation.begin_frame(); // the copy that a run keeps counts too
+    simulation.begin_frame(); // a run also needs the copy that a failed frame begins again from
     let (dt, limit) = simulation.next_dt();
     let memory = simulation.memory();
     let bodies: Vec<Value> = scene
@@ -97,7 +110,7 @@ pub(crate) fn describe(scene: &Scene, isa: Isa) -> Result<Value, CliError> {
     }))
 }
 
-/// The same for people.
+/// Formats the description for people.
 pub(crate) fn text(value: &Value) -> String {
     let number = |key: &str| value[key].as_f64().unwrap_or(f64::NAN);
     let word = |key: &str| value[key].as_str().unwrap_or_default().to_owned();
@@ -137,7 +150,7 @@ pub(crate) fn text(value: &Value) -> String {
                 plain(&body["material"]),
                 match body["left_out"].as_u64() {
                     None | Some(0) => String::new(),
-                    Some(count) => format!(", {count} left out where colliders are"),
+                    Some(count) => format!(", {count} left out inside colliders"),
                 }
             ),
         );
@@ -165,7 +178,7 @@ pub(crate) fn text(value: &Value) -> String {
     line(
         "memory",
         format!(
-            "{}B ({}B particles, {}B grid, {}B to begin a frame again)",
+            "{}B ({}B particles, {}B grid, {}B copy for retries)",
             with_prefix(number("memory_bytes")),
             with_prefix(number("particle_bytes")),
             with_prefix(number("grid_bytes")),

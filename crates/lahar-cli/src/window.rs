@@ -44,8 +44,9 @@ pub(crate) fn open(view: View) -> Result<ExitCode, CliError> {
 
 /// What is wrong with the scene or the run is found before anything opens.
 fn check(view: &View) -> Result<(), CliError> {
-    let path = Path::new(&view.what);
-    if builtin::find(&view.what).is_none() && (path.is_dir() || path.ends_with("run.json")) {
+    let path = Path::new(&view.scene_or_run);
+    if builtin::find(&view.scene_or_run).is_none() && (path.is_dir() || path.ends_with("run.json"))
+    {
         if view.compare.is_some() || !view.set.is_empty() {
             return Err(CliError::Usage(format!(
                 "{} is a finished run: --set and --compare need its scene",
@@ -57,7 +58,7 @@ fn check(view: &View) -> Result<(), CliError> {
         return (recording.frame(0).map(drop)).map_err(|error| CliError::Usage(error.to_string()));
     }
     let Some(comparison) = &view.compare else {
-        return Ok(Scene::load(&view.what, &view.set).map(drop)?);
+        return Ok(Scene::load(&view.scene_or_run, &view.set).map(drop)?);
     };
     if comparison.values.len() > Comparison::MOST {
         return Err(CliError::Usage(format!(
@@ -66,7 +67,7 @@ fn check(view: &View) -> Result<(), CliError> {
         )));
     }
     for overrides in comparison.overrides(&view.set) {
-        Scene::load(&view.what, &overrides)?;
+        Scene::load(&view.scene_or_run, &overrides)?;
     }
     Ok(())
 }
@@ -76,7 +77,7 @@ fn check(view: &View) -> Result<(), CliError> {
 fn open_window(view: Option<View>) -> Result<(), String> {
     let mut options = lahar_app::Options::default();
     if let Some(view) = view {
-        options.scene = Some(view.what);
+        options.scene = Some(view.scene_or_run);
         options.overrides = view.set;
         options.comparison = view.compare;
         options.isa = view.isa.unwrap_or(options.isa);

@@ -167,6 +167,41 @@ fn a_new_scene_runs_and_is_never_overwritten() {
     code(&lahar(here.path(), &["new", "."]), 2);
 }
 
+/// A built-in scene becomes a file, with the files that it names, and is the same scene.
+#[test]
+fn a_built_in_scene_is_printed_and_copied() {
+    let here = here();
+    let printed = lahar(here.path(), &["show", "dam-break", "--toml"]);
+    code(&printed, 0);
+    code(
+        &lahar(here.path(), &["new", "my.toml", "--from", "dam-break"]),
+        0,
+    );
+    let path = here.path().join("my.toml");
+    assert_eq!(std::fs::read(&path).unwrap(), printed.stdout);
+    let copied = lahar(here.path(), &["show", "my.toml", "--toml"]);
+    assert_eq!(copied.stdout, printed.stdout);
+
+    let words = ["new", "knot.toml", "--from", "knot-3d"];
+    code(&lahar(here.path(), &words), 0);
+    assert!(here.path().join("knot-3d.obj").is_file());
+    let words = ["show", "knot.toml", "--json"];
+    let own = json(&lahar(here.path(), &words));
+    let built_in = json(&lahar(here.path(), &["show", "knot-3d", "--json"]));
+    assert_eq!(own["particles"], built_in["particles"]);
+
+    // Neither the scene's file nor one that it names is overwritten.
+    std::fs::write(here.path().join("knot-3d.obj"), "mine").unwrap();
+    let again = lahar(here.path(), &["new", "again.toml", "--from", "knot-3d"]);
+    code(&again, 2);
+    assert!(errors(&again).contains("knot-3d.obj already exists"));
+    assert!(!here.path().join("again.toml").exists());
+    code(
+        &lahar(here.path(), &["new", "x.toml", "--from", "nothing"]),
+        2,
+    );
+}
+
 /// Any broken file gives one clear error, exit code 2 and no panic.
 #[test]
 fn broken_scenes_are_code_2() {

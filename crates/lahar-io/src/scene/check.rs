@@ -13,7 +13,7 @@ pub(crate) fn check(sources: &Sources, root: &mut Table) -> Result<usize, SceneE
     if root.entries.is_empty() {
         let error = sources.error(Span::default(), "the scene is empty");
         return Err(error.hint(
-            "a scene needs at least dx, a material and a body; `lahar show dam-break` shows one",
+            "a scene needs at least dx, a material and a body; `lahar show dam-break --toml` prints one",
         ));
     }
     let dimension = match root.get("dimension") {

@@ -248,7 +248,7 @@ impl Document {
         let bad = || {
             self.sources
                 .error(whole, format!("\"{}\" is not a key", shorten(key)))
-                .hint("write keys as in --set dx=0.01 or --set bodies.column.velocity=[1,0]")
+                .hint("write keys as in --set dx=0.01 or --set 'bodies.column.velocity=[1,0]'")
         };
         if key.contains(['\n', '=', '#']) {
             return Err(bad());
