@@ -11,7 +11,8 @@
 mod machine;
 mod report;
 
-use lahar::{Isa, PhaseTimes, Simulate};
+use lahar::{Isa, PhaseTimes};
+use lahar_io::driver::{Driver, Event, FrameEnd, Schedule};
 use serde::{Deserialize, Serialize};
 
 use lahar_io::error::SceneError;
@@ -215,24 +216,25 @@ pub fn measure(case: &Case, options: &Options) -> Result<Measured, BenchError> {
     let began = seconds();
     let scene = scene(case, options.particles)?;
     let isa = case.isa.unwrap_or(options.isa);
-    let mut simulation = scene.build(isa)?.simulation;
+    let simulation = scene.build(isa)?.simulation;
     let build_seconds = seconds() - began;
-    simulation.set_clock(seconds);
-    let warm_up = until_sorted(&mut *simulation, WARM_SORTS, 0)?;
-    let particles = simulation.particle_count() as u64;
-    let start = simulation.phase_times();
+    // A run ends with a sort, not with a frame of the scene.
+    let schedule = Schedule::new(FrameEnd::Open);
+    let mut driver = Driver::new(simulation, schedule).with_clock(seconds);
+    let warm_up = until_sorted(&mut driver, WARM_SORTS, 0)?;
+    let particles = driver.simulation().particle_count() as u64;
+    let start = driver.simulation().phase_times();
     let waited = machine::waited();
     let (mut rates, mut substeps, mut time) = (Vec::new(), 0, 0.0);
     for _ in 0..options.runs.max(1) {
         let began = seconds();
-        simulation.begin_frame();
-        let taken = until_sorted(&mut *simulation, 1, LEAST_SUBSTEPS)?;
+        let taken = until_sorted(&mut driver, 1, LEAST_SUBSTEPS)?;
         let took = seconds() - began;
         rates.push((particles * taken) as f64 / took);
         substeps += taken;
         time += took;
     }
-    let end = simulation.phase_times();
+    let end = driver.simulation().phase_times();
     let waited = machine::waited().zip(waited).map(|(end, start)| {
         ((end - start) / (time * rayon::current_num_threads() as f64)).min(1.0)
     });
@@ -264,22 +266,25 @@ pub fn measure(case: &Case, options: &Options) -> Result<Measured, BenchError> {
     })
 }
 
-/// Substeps, at least `least`, until particles have been sorted `sorts` times; returns how many.
-fn until_sorted(simulation: &mut dyn Simulate, sorts: u64, least: u64) -> Result<u64, BenchError> {
-    let before = simulation.phase_times().sorts;
+/// Takes substeps, at least `least`, as one frame, until particles have been sorted `sorts` times; returns how many.
+fn until_sorted(driver: &mut Driver, sorts: u64, least: u64) -> Result<u64, BenchError> {
+    let before = driver.simulation().phase_times().sorts;
     let mut substeps = 0;
     let mut sorted = 0;
     while substeps < MOST_SUBSTEPS {
-        let advance = simulation
-            .substep()
-            .map_err(|failure| BenchError::Failure(failure.to_string()))?;
-        substeps += advance.substeps;
-        let now = simulation.phase_times().sorts - before;
+        match driver.pump_substeps(1) {
+            Event::Unfinished | Event::Frame(_) => {}
+            Event::Retry(retry) => return Err(BenchError::Failure(retry.failure.to_string())),
+            Event::Failed(failure) => return Err(BenchError::Failure(failure.to_string())),
+        }
+        substeps += driver.last_advance().substeps;
+        let now = driver.simulation().phase_times().sorts - before;
         if now > sorted && now >= sorts && substeps >= least {
             break;
         }
         sorted = now;
     }
+    driver.end_frame();
     Ok(substeps)
 }
 

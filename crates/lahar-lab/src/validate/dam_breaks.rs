@@ -206,21 +206,15 @@ fn d3(session: &mut Session<'_>) -> Result<(), Stop> {
     let tables = [
         (
             "P1",
-            points(include_str!(
-                "../../data/dambreak_lobovsky2014_H300_P1.csv"
-            )),
+            points(include_str!("../../data/dambreak_lobovsky2014_H300_P1.csv")),
         ),
         (
             "P3",
-            points(include_str!(
-                "../../data/dambreak_lobovsky2014_H300_P3.csv"
-            )),
+            points(include_str!("../../data/dambreak_lobovsky2014_H300_P3.csv")),
         ),
         (
             "P4",
-            points(include_str!(
-                "../../data/dambreak_lobovsky2014_H300_P4.csv"
-            )),
+            points(include_str!("../../data/dambreak_lobovsky2014_H300_P4.csv")),
         ),
     ];
     let mut plots: Vec<Vec<(String, Series)>> = tables
@@ -273,27 +267,19 @@ fn d4(session: &mut Session<'_>) -> Result<(), Stop> {
     let tables = [
         (
             "P1",
-            points(include_str!(
-                "../../data/dambreak_decourcy2024_sim_P1.csv"
-            )),
+            points(include_str!("../../data/dambreak_decourcy2024_sim_P1.csv")),
         ),
         (
             "P2",
-            points(include_str!(
-                "../../data/dambreak_decourcy2024_sim_P2.csv"
-            )),
+            points(include_str!("../../data/dambreak_decourcy2024_sim_P2.csv")),
         ),
         (
             "P3",
-            points(include_str!(
-                "../../data/dambreak_decourcy2024_sim_P3.csv"
-            )),
+            points(include_str!("../../data/dambreak_decourcy2024_sim_P3.csv")),
         ),
         (
             "P4",
-            points(include_str!(
-                "../../data/dambreak_decourcy2024_sim_P4.csv"
-            )),
+            points(include_str!("../../data/dambreak_decourcy2024_sim_P4.csv")),
         ),
     ];
     let mut plots: Vec<Vec<(String, Series)>> = tables
@@ -324,9 +310,7 @@ fn d4(session: &mut Session<'_>) -> Result<(), Stop> {
 }
 
 fn d5(session: &mut Session<'_>) -> Result<(), Stop> {
-    let table = points(include_str!(
-        "../../data/dambreak_buchner2002_pressure.csv"
-    ));
+    let table = points(include_str!("../../data/dambreak_buchner2002_pressure.csv"));
     let mut plot = vec![("experiment".to_owned(), table.clone())];
     for (cells, gauges) in impacts(session, &["B"])? {
         let end = table.iter().map(|p| p.0).fold(0.0, f64::max).min(6.5);
@@ -374,15 +358,11 @@ const GAUGED: [f64; 2] = [0.01, 0.6];
 
 fn d6(session: &mut Session<'_>) -> Result<(), Stop> {
     let force = since(
-        &points(include_str!(
-            "../../data/dambreak_yeh_petroff_force.csv"
-        )),
+        &points(include_str!("../../data/dambreak_yeh_petroff_force.csv")),
         BORE[0],
     );
     // Its clock begins when the bore comes.
-    let velocity = points(include_str!(
-        "../../data/dambreak_yeh_petroff_velocity.csv"
-    ));
+    let velocity = points(include_str!("../../data/dambreak_yeh_petroff_velocity.csv"));
     let impulse =
         |series: &[(f64, f64)]| mean(series, PASSAGE[0], PASSAGE[1]) * (PASSAGE[1] - PASSAGE[0]);
     let most = |series: &[(f64, f64)]| series.iter().map(|p| p.1).fold(0.0, f64::max);
@@ -403,7 +383,7 @@ fn d6(session: &mut Session<'_>) -> Result<(), Stop> {
             .collect();
         let mut running = session.start(&owned)?;
         running.frames(|_| {})?;
-        let dx = running.simulation.dx();
+        let dx = running.simulation().dx();
         let pushed = since(&running.probe("force", 0), BORE[0]);
         let flows = since(&running.probe("velocity", 0), BORE[1]);
         session.relative(

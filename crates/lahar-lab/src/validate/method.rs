@@ -97,10 +97,10 @@ fn k2(session: &mut Session<'_>) -> Result<(), Stop> {
             let set = [("kernel", kernel), ("precision", precision)];
             let set = set.map(|(key, word)| (key, format!("\"{word}\"")));
             let mut running = session.start(&set)?;
-            let simulation = &mut running.simulation;
-            let before = [Field::Velocity, Field::Affine].map(|name| field(&**simulation, name));
+            let simulation = running.simulation_mut();
+            let before = [Field::Velocity, Field::Affine].map(|name| field(simulation, name));
             simulation.substep()?;
-            let after = [Field::Velocity, Field::Affine].map(|name| field(&**simulation, name));
+            let after = [Field::Velocity, Field::Affine].map(|name| field(simulation, name));
             let pairs = before.iter().flatten().zip(after.iter().flatten());
             let worst = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             session.at_most(
@@ -117,11 +117,11 @@ fn k3(session: &mut Session<'_>) -> Result<(), Stop> {
     for transfer in ["apic", "flip", "pic"] {
         let mut running = session.start(&[("transfer", format!("\"{transfer}\""))])?;
         let (mut momentum, mut angular) = (0.0_f64, 0.0_f64);
-        let scale = scales(&*running.simulation);
-        let mut last = running.simulation.diagnostics();
+        let scale = scales(running.simulation());
+        let mut last = running.simulation_mut().diagnostics();
         for _ in 0..2000 {
-            running.simulation.substep()?;
-            let now = running.simulation.diagnostics();
+            running.simulation_mut().substep()?;
+            let now = running.simulation_mut().diagnostics();
             for axis in 0..2 {
                 momentum =
                     momentum.max((now.momentum[axis] - last.momentum[axis]).abs() / scale[0]);
@@ -160,12 +160,12 @@ fn k4(session: &mut Session<'_>) -> Result<(), Stop> {
         let mut running = session.start(&set)?;
         let mut highest = f64::NEG_INFINITY;
         let mut start = None;
-        while running.simulation.time() < 3.5 {
-            let row = running.simulation.diagnostics();
+        while running.simulation().time() < 3.5 {
+            let row = running.simulation_mut().diagnostics();
             let energy = row.kinetic_energy + row.elastic_energy;
             let start = *start.get_or_insert(energy);
             highest = highest.max(energy / start - 1.0);
-            running.simulation.substep()?;
+            running.simulation_mut().substep()?;
         }
         session.report(
             &format!("largest energy above the start, cfl {cfl}"),
@@ -211,7 +211,7 @@ fn k7(session: &mut Session<'_>) -> Result<(), Stop> {
     for (precision, target) in [("f64", 1e-8), ("f32", 1e-5)] {
         let mut running = session.start(&[("precision", format!("\"{precision}\""))])?;
         running.advance_to(0.1)?;
-        let x = field(&*running.simulation, Field::Position);
+        let x = field(running.simulation(), Field::Position);
         for (power, wanted) in (1..).zip(MPM88_MOMENTS) {
             let sum: f64 = x
                 .chunks(2)
@@ -237,11 +237,11 @@ fn k8(session: &mut Session<'_>) -> Result<(), Stop> {
             let count = (y.len() / 2) as f64;
             y.iter().skip(1).step_by(2).sum::<f64>() / count
         };
-        let start = height(&*running.simulation);
+        let start = height(running.simulation());
         running.advance_to(0.5)?;
-        let (n, dt) = (running.simulation.substeps() as f64, 1e-3);
+        let (n, dt) = (running.simulation().substeps() as f64, 1e-3);
         let exact = start + 1.5 * n * dt - 9.81 * dt * dt * n * (n + 1.0) / 2.0;
-        let ours = height(&*running.simulation);
+        let ours = height(running.simulation());
         session.absolute(&format!("mean height [m], {transfer}"), exact, ours, 1e-12);
     }
     Ok(())

@@ -4,10 +4,11 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use lahar::{Data, Diagnostics, Failure, Field, ProbeSamples, Retry, Simulate};
+use lahar_io::driver::{Driver, Event};
 
 use super::{Case, Finding, Options, Outcome};
-use lahar_io::error::SceneError;
 use crate::plot::{Line, Plot};
+use lahar_io::error::SceneError;
 use lahar_io::scene::Scene;
 
 /// What ends a case early.
@@ -43,7 +44,7 @@ pub(super) struct Session<'a> {
 /// A scene that runs.
 pub(super) struct Running {
     pub(super) scene: Scene,
-    pub(super) simulation: Box<dyn Simulate>,
+    driver: Driver,
     /// What probes have read so far.
     probes: Vec<ProbeSamples>,
     /// What it was started by.
@@ -116,14 +117,14 @@ impl<'a> Session<'a> {
         let command = format!("{scene}{}", words.collect::<String>());
         (self.progress)(&format!("{}: {command}", self.case.id));
         let scene = Scene::load(scene, &set)?;
-        let simulation = scene.build(self.options.isa)?.simulation;
-        let count = simulation.particle_count();
+        let driver = Driver::of_scene(&scene, scene.build(self.options.isa)?.simulation);
+        let count = driver.simulation().particle_count();
         self.outcome
             .runs
             .push(format!("{command} ({count} particles)"));
         Ok(Running {
             scene,
-            simulation,
+            driver,
             probes: Vec::new(),
             command,
             retries: Rc::clone(&self.retries),
@@ -201,30 +202,50 @@ impl<'a> Session<'a> {
 }
 
 impl Running {
-    /// Runs to `time` \[s\]; what fails is tried again from here with a shorter time step, as by `lahar run`.
+    /// The simulation.
+    pub(super) fn simulation(&self) -> &dyn Simulate {
+        self.driver.simulation()
+    }
+
+    /// The simulation, for substeps of its own and for diagnostics.
+    pub(super) fn simulation_mut(&mut self) -> &mut dyn Simulate {
+        self.driver.simulation_mut()
+    }
+
+    /// Runs to `time` \[s\]. Substeps that fail are taken again from here with a shorter dt.
     pub(super) fn advance_to(&mut self, time: f64) -> Result<(), Stop> {
-        let told = |retry: &Retry| {
-            let told = format!("{}: {retry}", self.command);
-            self.retries.borrow_mut().push(told);
-        };
-        let frame = lahar::frame(
-            &mut *self.simulation,
-            |simulation| simulation.advance_to(time),
-            told,
-        );
-        match frame {
-            Ok(_) => Ok(()),
-            Err(failure) => Err(Stop::Failure(Retry::in_vain(&failure))),
+        let (retries, command) = (&self.retries, &self.command);
+        let told = |retry: &Retry| retries.borrow_mut().push(format!("{command}: {retry}"));
+        let frame = (self.driver.advance_to(time, told))
+            .map_err(|failure| Stop::Failure(Retry::in_vain(&failure)))?;
+        self.keep_probes(frame.probes);
+        Ok(())
+    }
+
+    /// Runs to the end of the scene's next frame.
+    pub(super) fn frame(&mut self) -> Result<(), Stop> {
+        loop {
+            match self.driver.pump(&mut || true) {
+                Event::Frame(frame) => {
+                    self.keep_probes(frame.probes);
+                    return Ok(());
+                }
+                Event::Retry(retry) => {
+                    let told = format!("{}: {retry}", self.command);
+                    self.retries.borrow_mut().push(told);
+                }
+                Event::Failed(failure) => return Err(Stop::Failure(Retry::in_vain(&failure))),
+                Event::Unfinished => {}
+            }
         }
     }
 
     /// Runs frame by frame to the scene's end; `look` sees the simulation at the start and after each.
     pub(super) fn frames(&mut self, mut look: impl FnMut(&mut dyn Simulate)) -> Result<(), Stop> {
-        look(&mut *self.simulation);
-        for frame in 1..=self.scene.frames() {
-            self.advance_to(frame as f64 / self.scene.frame_rate)?;
-            self.take_probes();
-            look(&mut *self.simulation);
+        look(self.simulation_mut());
+        for _ in 0..self.scene.frames() {
+            self.frame()?;
+            look(self.simulation_mut());
         }
         Ok(())
     }
@@ -236,8 +257,7 @@ impl Running {
         Ok(rows)
     }
 
-    fn take_probes(&mut self) {
-        let taken = self.simulation.take_probe_samples();
+    fn keep_probes(&mut self, taken: Vec<ProbeSamples>) {
         if self.probes.is_empty() {
             self.probes = taken;
             return;
@@ -249,7 +269,8 @@ impl Running {
 
     /// One number of what a probe has read; nothing if there is no such probe.
     pub(super) fn probe(&mut self, name: &str, column: usize) -> Series {
-        self.take_probes();
+        let latest = self.simulation_mut().take_probe_samples();
+        self.keep_probes(latest);
         let probe = self.probes.iter().find(|probe| probe.name == name);
         let samples = probe.map_or(&[][..], |probe| &probe.samples);
         let point = |sample: &lahar::ProbeSample| Some((sample.time, *sample.values.get(column)?));

@@ -120,15 +120,13 @@ fn e2(session: &mut Session<'_>) -> Result<(), Stop> {
 }
 
 fn e3(session: &mut Session<'_>) -> Result<(), Stop> {
-    let reference = points(include_str!(
-        "../../data/solid_cantilever_large_FEM.csv"
-    ));
+    let reference = points(include_str!("../../data/solid_cantilever_large_FEM.csv"));
     let deepest = |series: &Series| series.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
     let mut lines = vec![("finite elements".to_owned(), reference.clone())];
     for (cells, target) in [(8.0, 0.02), (16.0, 0.01)] {
         let dx: f64 = 1.0 / cells;
         let mut running = session.start(&[("dx", dx.to_string())])?;
-        let corner = nearest(&*running.simulation, [4.0, 0.0]);
+        let corner = nearest(running.simulation(), [4.0, 0.0]);
         let mut series = Series::new();
         let mut start = None;
         running.frames(|simulation| {
@@ -168,9 +166,9 @@ fn e3(session: &mut Session<'_>) -> Result<(), Stop> {
         .position(|alpha| *alpha == 4.0)
         .unwrap_or(0);
     let mut running = session.start_scene("e3-elastica", &[])?;
-    let start = field(&*running.simulation, Field::Position);
+    let start = field(running.simulation(), Field::Position);
     running.frames(|_| {})?;
-    let end = field(&*running.simulation, Field::Position);
+    let end = field(running.simulation(), Field::Position);
     // Means over the last two columns of particles, half a cell apart, carried on to the end of the beam.
     let dx = 0.00625;
     let column = |from: f64, to: f64, axis: usize| {

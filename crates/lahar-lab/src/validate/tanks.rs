@@ -41,13 +41,13 @@ fn f4(session: &mut Session<'_>) -> Result<(), Stop> {
     let wave = "[\"-0.5*cosh(2*pi*y)/sinh(2*pi)*sin(2*pi*x)\", \"0.5*sinh(2*pi*y)/sinh(2*pi)*cos(2*pi*x)\"]";
     let mut running = session.start(&[("bodies.water.velocity", wave.to_owned())])?;
     let before = evenness(&running);
-    let first = running.simulation.diagnostics();
+    let first = running.simulation_mut().diagnostics();
     let energy =
         |row: &lahar::Diagnostics| row.kinetic_energy + row.elastic_energy + row.potential_energy;
     let mut highest = energy(&first);
     let start = highest;
     running.frames(|simulation| highest = highest.max(energy(&simulation.diagnostics())))?;
-    let last = running.simulation.diagnostics();
+    let last = running.simulation_mut().diagnostics();
     session.relative(
         "volume after 12 s of sloshing [m²], 2D, jittered",
         first.volume,
@@ -76,19 +76,17 @@ fn at_rest(session: &mut Session<'_>, mut running: Running, what: &str) -> Resul
         SUBSTEPS
     };
     let before = evenness(&running);
-    let first = running.simulation.diagnostics();
+    let first = running.simulation_mut().diagnostics();
     let mut fastest = 0.0_f64;
-    let mut frame = 0;
-    while running.simulation.substeps() < substeps {
-        frame += 1;
-        running.advance_to(f64::from(frame) / running.scene.frame_rate)?;
-        fastest = fastest.max(running.simulation.diagnostics().max_speed);
+    while running.simulation().substeps() < substeps {
+        running.frame()?;
+        fastest = fastest.max(running.simulation_mut().diagnostics().max_speed);
     }
-    let last = running.simulation.diagnostics();
+    let last = running.simulation_mut().diagnostics();
     let weight = first.mass * GRAVITY;
     let c = running.scene.materials[0].wave_speed;
     let base = 1000.0 * c * c * (GRAVITY * DEPTH / (c * c)).exp_m1();
-    let end = running.simulation.time();
+    let end = running.simulation().time();
     // Each reading is the mean force since the one before, so that their mean leaves nothing out.
     let force = running.probe("floor", 1);
     let readings = force.iter().filter(|p| p.0 > 0.1 * end);
@@ -134,7 +132,7 @@ fn at_rest(session: &mut Session<'_>, mut running: Running, what: &str) -> Resul
 /// How evenly particles lie: the first percentile of the distance to the nearest other one, in cells, and the
 /// spread of the number of particles in a cell of the lower nine tenths.
 fn evenness(running: &Running) -> [f64; 2] {
-    let simulation: &dyn Simulate = &*running.simulation;
+    let simulation: &dyn Simulate = running.simulation();
     let (d, dx) = (simulation.dimension(), simulation.dx());
     let x: Vec<f64> = field(simulation, Field::Position)
         .iter()

@@ -63,7 +63,7 @@ fn f1(session: &mut Session<'_>) -> Result<(), Stop> {
             target,
         );
         errors.push(rate - 2.0 * b);
-        let simulation = &*running.simulation;
+        let simulation = running.simulation();
         let decay = (b * simulation.time()).exp();
         let (x, v) = (
             field(simulation, Field::Position),
