@@ -9,14 +9,14 @@ use lahar::Command;
 use lahar_io::scene::{Comparison, Controls};
 
 use crate::camera::{Camera, V3, length, scale};
-use crate::colour::{self, ColourBy, Range};
-use crate::compare::Draft;
+use crate::color::{self, ColorBy, Range};
+use crate::compare::ComparisonDraft;
 use crate::controls::{Action, Direction};
-use crate::hand::{Grip, Hand};
+use crate::pointer::{PointerMode, PointerTool};
 use crate::renderer::{Line, Picture, Sprites, View};
 use crate::scenery::{Scenery, sprites, usual_radius};
-use crate::scenes::{Changes, Facts, SceneCard, Setting};
-use crate::solver::{Condition, Order, Readouts, Shown, Side, Wanted};
+use crate::scenes::{Changes, SceneCard, SceneInfo, Setting};
+use crate::solver::{Condition, Order, Readouts, SceneRequest, Shown, Side};
 
 /// What the window must do for the state.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,20 +47,20 @@ pub struct AppState {
     pub speed: f64,
     /// Gravity now \[m/s²\].
     pub gravity: V3,
-    /// What particles are coloured by.
-    pub colour_by: ColourBy,
-    /// Colours of the scene's swatches, by index.
+    /// What particles are colored by.
+    pub color_by: ColorBy,
+    /// Colors of the scene's swatches, by index.
     pub palette: Vec<Color32>,
-    /// The colour behind everything.
+    /// The color behind everything.
     pub background: Color32,
     /// Low and high end of the legend.
     pub range: Range,
     /// Radius of a particle, in parts of its spacing, or of the scene's own radius.
     pub radius: f32,
     /// The hand.
-    pub hand: Hand,
+    pub hand: PointerTool,
     /// Where the hand is \[m\] and what it does, while a button holds it.
-    pub held: Option<(V3, Grip)>,
+    pub held: Option<(V3, PointerMode)>,
     /// Whether the list of scenes is open.
     pub show_scenes: bool,
     /// Frames tried again that have been told of.
@@ -80,7 +80,7 @@ pub struct AppState {
     /// Width over height of where a side is drawn.
     pub aspect: f64,
     /// What would be compared.
-    pub draft: Draft,
+    pub draft: ComparisonDraft,
     /// Whether the view was turned, moved or zoomed; if not, it follows the window's size.
     pub view_is_own: bool,
     pub(crate) scenery: Scenery,
@@ -95,7 +95,7 @@ pub struct AppState {
     comparison: Option<Comparison>,
     shown: Shown,
     effects: Vec<Effect>,
-    recolour: bool,
+    recolor: bool,
     refit: bool,
     asked_for_thumbnails: bool,
 }
@@ -115,10 +115,10 @@ const ZOOM: f64 = 1.15;
 
 impl AppState {
     /// Opens a scene, `wanted` or the default one.
-    pub fn new(scenes: Vec<SceneCard>, default_scene: &str, wanted: Option<Wanted>) -> Self {
-        let wanted = wanted.unwrap_or_else(|| Wanted {
+    pub fn new(scenes: Vec<SceneCard>, default_scene: &str, wanted: Option<SceneRequest>) -> Self {
+        let wanted = wanted.unwrap_or_else(|| SceneRequest {
             scene: default_scene.to_owned(),
-            ..Wanted::default()
+            ..SceneRequest::default()
         });
         let mut state = Self {
             scenes,
@@ -128,12 +128,12 @@ impl AppState {
             paused: false,
             speed: 1.0,
             gravity: [0.0; 3],
-            colour_by: ColourBy::default(),
+            color_by: ColorBy::default(),
             palette: vec![],
-            background: colour::BACKGROUND,
+            background: color::BACKGROUND,
             range: Range::default(),
             radius: 1.0,
-            hand: Hand::of(Controls::default(), EARTH, 1.0, 0.01),
+            hand: PointerTool::of(Controls::default(), EARTH, 1.0, 0.01),
             held: None,
             show_scenes: false,
             told_retries: 0,
@@ -145,7 +145,7 @@ impl AppState {
             camera: None,
             notice: None,
             aspect: 1.5,
-            draft: Draft::default(),
+            draft: ComparisonDraft::default(),
             view_is_own: false,
             scenery: Scenery::default(),
             lines: vec![],
@@ -155,7 +155,7 @@ impl AppState {
             comparison: wanted.comparison,
             shown: Shown::default(),
             effects: vec![],
-            recolour: false,
+            recolor: false,
             refit: true,
             asked_for_thumbnails: false,
         };
@@ -174,8 +174,8 @@ impl AppState {
     }
 
     /// What stays the same while the scene runs.
-    pub fn facts(&self) -> Option<&Facts> {
-        self.shown.facts.as_deref()
+    pub fn info(&self) -> Option<&SceneInfo> {
+        self.shown.info.as_deref()
     }
 
     /// What runs side by side: one as a rule; none before the first scene is built.
@@ -190,7 +190,7 @@ impl AppState {
 
     /// Frames of the recording that is replayed; `None`: the scene is simulated.
     pub fn recorded_frames(&self) -> Option<usize> {
-        self.facts().and_then(|facts| facts.frames)
+        self.info().and_then(|info| info.frames)
     }
 
     /// What is compared.
@@ -263,7 +263,7 @@ impl AppState {
                 let next = SPEEDS.into_iter().rev().find(|&s| s < self.speed * 0.999);
                 self.set_speed(next.unwrap_or(SPEEDS[0]));
             }
-            Action::Colours => self.set_colour_by(self.colour_by.next()),
+            Action::Colors => self.set_color_by(self.color_by.next()),
             Action::Fit => self.fit(),
             Action::Screenshot => self.effects.push(Effect::Screenshot),
             Action::Hints => self.show_hints = !self.show_hints,
@@ -289,7 +289,7 @@ impl AppState {
     }
 
     fn reopen(&mut self) {
-        self.order(Order::Open(Wanted {
+        self.order(Order::Open(SceneRequest {
             scene: self.scene.clone(),
             changes: self.changes.clone(),
             comparison: self.comparison.clone(),
@@ -317,7 +317,7 @@ impl AppState {
 
     /// Opens the scene anew with the settings of the panel.
     pub fn apply_settings(&mut self) {
-        let before = self.facts().map_or(&[][..], |facts| &facts.settings);
+        let before = self.info().map_or(&[][..], |info| &info.settings);
         let changed = self.settings.iter().filter(|new| {
             let old = before.iter().find(|old| old.key == new.key);
             old.is_some_and(|old| old.value != new.value)
@@ -361,32 +361,32 @@ impl AppState {
     pub fn set_gravity(&mut self, gravity: V3) {
         let gravity = gravity.map(|c| c + 0.0); // no -0
         self.gravity = gravity;
-        self.order(Order::Tell(Command::Gravity(gravity)));
+        self.order(Order::Command(Command::Gravity(gravity)));
     }
 
-    /// What particles are coloured by.
-    pub fn set_colour_by(&mut self, by: ColourBy) {
-        self.colour_by = by;
-        self.recolour = true;
+    /// What particles are colored by.
+    pub fn set_color_by(&mut self, by: ColorBy) {
+        self.color_by = by;
+        self.recolor = true;
         self.order(Order::Fields(by.fields()));
     }
 
-    /// Colours of the materials were changed.
+    /// Colors of the materials were changed.
     pub fn repaint(&mut self) {
-        self.recolour = true;
+        self.recolor = true;
     }
 
     /// The magnitude of gravity that keys turn \[m/s²\].
     pub fn scene_gravity(&self) -> f64 {
-        let facts = self.facts();
-        let own = facts.map_or(0.0, |facts| length(facts.gravity));
-        let keys = facts.and_then(|facts| facts.controls.gravity);
+        let info = self.info();
+        let own = info.map_or(0.0, |info| length(info.gravity));
+        let keys = info.and_then(|info| info.controls.gravity);
         keys.unwrap_or(if own > 0.0 { own } else { EARTH })
     }
 
     /// Whether gravity acts while a key is held, and none after.
     pub fn holds_gravity(&self) -> bool {
-        self.facts().is_some_and(|facts| facts.controls.hold)
+        self.info().is_some_and(|info| info.controls.hold)
     }
 
     /// The direction whose key is held, where [`AppState::holds_gravity`].
@@ -432,55 +432,55 @@ impl AppState {
     /// Takes in what the solver shows.
     pub fn receive(&mut self, shown: Shown) {
         let opened = shown.opened != self.shown.opened;
-        let scene_before = self.facts().map(|facts| facts.card.name.clone());
+        let scene_before = self.info().map(|info| info.card.name.clone());
         self.shown = shown;
-        if opened && let Some(facts) = self.shown.facts.clone() {
-            self.gravity = facts.gravity;
+        if opened && let Some(info) = self.shown.info.clone() {
+            self.gravity = info.gravity;
             self.held_gravity = None;
-            self.settings.clone_from(&facts.settings);
-            self.draft.offer(&facts.settings, self.comparison.as_ref());
+            self.settings.clone_from(&info.settings);
+            self.draft.offer(&info.settings, self.comparison.as_ref());
             self.range.forget();
             let snapshot = self.sides().first().map(|side| Arc::clone(&side.snapshot));
-            self.scenery = Scenery::new(&facts, snapshot.as_deref());
-            if scene_before.as_ref() != Some(&facts.card.name) {
-                self.look_anew(&facts, scene_before.is_none());
+            self.scenery = Scenery::new(&info, snapshot.as_deref());
+            if scene_before.as_ref() != Some(&info.card.name) {
+                self.look_anew(&info, scene_before.is_none());
             }
             if core::mem::take(&mut self.refit) {
                 self.fit();
             }
         }
-        self.recolour = true;
+        self.recolor = true;
     }
 
-    /// Another scene: its own colours, its own hand.
-    fn look_anew(&mut self, facts: &Facts, first: bool) {
-        let by = facts.angle.colour_by;
+    /// Another scene: its own colors, its own hand.
+    fn look_anew(&mut self, info: &SceneInfo, first: bool) {
+        let by = info.angle.color_by;
         // What was chosen stays, unless the scene asks for something.
-        if self.colour_by != by && (first || by != ColourBy::Material) {
-            self.set_colour_by(by);
+        if self.color_by != by && (first || by != ColorBy::Material) {
+            self.set_color_by(by);
         }
-        self.palette = colour::palette(&facts.swatches);
-        self.background = colour::background(facts);
-        self.radius = usual_radius(facts);
-        self.hand = Hand::of(
-            facts.controls,
+        self.palette = color::palette(&info.swatches);
+        self.background = color::background(info);
+        self.radius = usual_radius(info);
+        self.hand = PointerTool::of(
+            info.controls,
             self.scene_gravity(),
-            self.scenery.smallest(facts.dimension),
-            facts.dx,
+            self.scenery.smallest(info.dimension),
+            info.dx,
         );
-        if self.speed != facts.controls.speed {
-            self.set_speed(facts.controls.speed);
+        if self.speed != info.controls.speed {
+            self.set_speed(info.controls.speed);
         }
     }
 
     /// The view that the scene asks for, or the whole of it.
     fn fit(&mut self) {
-        let Some(facts) = self.facts() else { return };
+        let Some(info) = self.info() else { return };
         let camera = Camera::fit(
-            facts.dimension,
+            info.dimension,
             self.scenery.extent,
-            facts.gravity,
-            facts.angle,
+            info.gravity,
+            info.angle,
             self.aspect,
         );
         self.camera = Some(camera);
@@ -526,8 +526,8 @@ impl AppState {
 
     /// What is to be drawn of a side, on so many pixels.
     pub fn picture(&mut self, side: usize, pixels: [f32; 2]) -> Option<Picture> {
-        if self.recolour {
-            self.recolour = false;
+        if self.recolor {
+            self.recolor = false;
             self.make_sprites();
         }
         let camera = self.camera.as_ref()?;
@@ -549,28 +549,28 @@ impl AppState {
 
     /// The lines of each side's moment, if there are colliders.
     fn make_lines(&mut self) {
-        let Some(facts) = (self.shown.facts.as_ref()).filter(|f| !f.colliders.is_empty()) else {
+        let Some(info) = (self.shown.info.as_ref()).filter(|f| !f.colliders.is_empty()) else {
             self.lines.clear();
             return;
         };
         self.lines = (self.shown.sides.iter())
-            .map(|side| self.scenery.lines_at(facts, side.snapshot.time))
+            .map(|side| self.scenery.lines_at(info, side.snapshot.time))
             .collect();
     }
 
     fn make_sprites(&mut self) {
         self.make_lines();
-        let Some(facts) = &self.shown.facts else {
+        let Some(info) = &self.shown.info else {
             return;
         };
-        let by = self.colour_by;
+        let by = self.color_by;
         let snapshots = || self.shown.sides.iter().map(|side| &*side.snapshot);
         // One legend for all sides.
         self.range
             .follow(by, snapshots().filter_map(|s| by.values(s)));
-        let colours = (by, self.palette.as_slice(), &self.range);
+        let colors = (by, self.palette.as_slice(), &self.range);
         self.sprites = snapshots()
-            .map(|snapshot| Arc::new(sprites(snapshot, facts, &self.scenery, colours)))
+            .map(|snapshot| Arc::new(sprites(snapshot, info, &self.scenery, colors)))
             .collect();
     }
 

@@ -1,4 +1,4 @@
-//! From metres to the window and back: a flat view in 2D, an orbiting one in 3D.
+//! From meters to the window and back: a flat view in 2D, an orbiting one in 3D.
 //!
 //! ```text
 //!   world [m] ──view──▶ camera's axes (right, up, back) ──projection──▶ −1..1 ──▶ points of the window
@@ -135,7 +135,7 @@ impl Camera {
         }
     }
 
-    /// Two axes on the horizon; from yaw 0, the eye is towards the second.
+    /// Two axes on the horizon; from yaw 0, the eye is toward the second.
     fn level_axes(&self) -> [V3; 2] {
         let side = if self.up[0] == 0.0 {
             [1.0, 0.0, 0.0]
@@ -145,7 +145,7 @@ impl Camera {
         [side, cross(side, self.up)]
     }
 
-    /// The camera's axes: right, up, and back (towards the eye).
+    /// The camera's axes: right, up, and back (toward the eye).
     pub fn axes(&self) -> [V3; 3] {
         if self.dimension == 2 {
             return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -236,9 +236,9 @@ impl Camera {
         let [right, up, back] = self.axes();
         let forward = dot(back, sub(through, self.target));
         let half_height = self.half_height_at(through);
-        let centre = add(self.target, scale(back, forward));
+        let center = add(self.target, scale(back, forward));
         add(
-            centre,
+            center,
             add(
                 scale(right, at[0] * half_height * aspect),
                 scale(up, at[1] * half_height),
@@ -403,7 +403,7 @@ mod tests {
             if dimension == 2 {
                 assert!((away.unwrap() - 1.0).abs() < 1e-12);
             } else {
-                // 0.4 m up at 0.4/tan 30° = 0.69 m from the eye: a metre nearer is behind it.
+                // 0.4 m up at 0.4/tan 30° = 0.69 m from the eye: a meter nearer is behind it.
                 assert_eq!(away, None);
             }
         }

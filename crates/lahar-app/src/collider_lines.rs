@@ -32,7 +32,7 @@ pub(crate) fn collider_lines(
                 start: local(a),
                 half_width,
                 end: local(b_),
-                colour: [r, g, b, opacity],
+                color: [r, g, b, opacity],
             });
         };
         for solid in placed.solids() {

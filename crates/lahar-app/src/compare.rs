@@ -6,14 +6,14 @@ use crate::scenes::{Setting, SettingValue};
 
 /// A comparison being put together.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Draft {
+pub struct ComparisonDraft {
     /// The setting, by its key; empty before there is a scene.
     pub key: String,
     /// The values, the scene's own first at first.
     pub values: Vec<SettingValue>,
 }
 
-impl Draft {
+impl ComparisonDraft {
     /// Another scene, or the same with other settings: keeps to what is compared, or suggests something.
     pub(crate) fn offer(&mut self, settings: &[Setting], running: Option<&Comparison>) {
         if running.is_some_and(|running| running.key == self.key) {
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn a_setting_is_compared_with_something_else_and_never_with_itself() {
-        let mut draft = Draft::default();
+        let mut draft = ComparisonDraft::default();
         assert_eq!(draft.comparison(), None);
         draft.offer(&[transfer()], None);
         let comparison = draft.comparison().unwrap();
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn what_was_asked_for_on_the_command_line_is_in_the_panel() {
-        let mut draft = Draft::default();
+        let mut draft = ComparisonDraft::default();
         let running: Comparison = "transfer=pic,flip".parse().unwrap();
         draft.offer(&[transfer()], Some(&running));
         assert_eq!(

@@ -9,9 +9,9 @@ pub enum Direction {
     Left,
     /// To the right.
     Right,
-    /// Upwards.
+    /// Upward.
     Up,
-    /// Downwards.
+    /// Downward.
     Down,
 }
 
@@ -52,8 +52,8 @@ pub enum Action {
     Faster,
     /// Fewer.
     Slower,
-    /// The next thing to colour by.
-    Colours,
+    /// The next thing to color by.
+    Colors,
     /// The whole scene in view.
     Fit,
     /// Orbits; in 2D, moves the view.
@@ -182,7 +182,7 @@ const BINDINGS: &[Binding] = &[
     repeating(key(&[Key::Comma], Action::Back)),
     repeating(key(&[Key::Plus, Key::Equals], Action::Faster)),
     repeating(key(&[Key::Minus], Action::Slower)),
-    key(&[Key::C], Action::Colours),
+    key(&[Key::C], Action::Colors),
     key(&[Key::V], Action::Compare),
     key(&[Key::F12], Action::Screenshot),
     key(&[Key::H], Action::Hints),
@@ -210,7 +210,7 @@ const REPLAY: &[Hint] = &[
 const ALWAYS: &[Hint] = &[
     hint("1 to 9", "choose a scene, L: any of them, by typing"),
     hint("+ -", "faster, slower"),
-    hint("C", "colours: material, body, speed, pressure, density, J"),
+    hint("C", "colors: material, body, speed, pressure, density, J"),
     hint("Shift, Ctrl+arrows", "orbit, move the view"),
     hint("Page Up, Down", "zoom, F: fit the view"),
     hint("Tab, Esc", "into the panel, out of it; Esc: leave"),

@@ -16,20 +16,20 @@
 pub mod app_state;
 pub mod camera;
 mod collider_lines;
-pub mod colour;
+pub mod color;
 pub mod compare;
 pub mod controls;
-pub mod hand;
 mod meter;
 mod overlay;
 mod painter;
 pub mod panel;
+pub mod pointer;
 pub mod renderer;
+pub mod scene_library;
 mod scene_list;
 mod scenery;
 pub mod scenes;
 mod screenshot;
-pub mod shelf;
 pub mod solver;
 pub mod view;
 mod window;
@@ -49,9 +49,9 @@ use lahar::Isa;
 use lahar_io::scene::Comparison;
 use meter::Meter;
 pub use painter::{PaintError, Painter};
+use scene_library::SceneLibrary;
 use scenes::SceneSource;
-use shelf::Shelf;
-use solver::{Solver, Wanted};
+use solver::{SceneRequest, Solver};
 use window::Window;
 
 /// How the window opens.
@@ -125,11 +125,11 @@ impl std::error::Error for AppError {}
 /// There is no display, no adapter, or the window did not open. A scene that cannot be opened is no
 /// error: the window shows what is wrong.
 pub fn run(options: Options) -> Result<(), AppError> {
-    let shelf = Shelf {
+    let library = SceneLibrary {
         isa: options.isa,
         overrides: options.overrides.clone(),
     };
-    run_with(options, Arc::new(shelf))
+    run_with(options, Arc::new(library))
 }
 
 /// [`run`] with scenes from elsewhere.
@@ -143,10 +143,10 @@ pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), Ap
     let adapter_setup = WgpuSetupCreateNew::without_display_handle();
     check_adapter(&adapter_setup.instance_descriptor)?;
 
-    let wanted = Wanted {
+    let wanted = SceneRequest {
         scene: options.scene.unwrap_or_else(|| DEFAULT_SCENE.to_owned()),
         comparison: options.comparison,
-        ..Wanted::default()
+        ..SceneRequest::default()
     };
     let state = AppState::new(source.list(), DEFAULT_SCENE, Some(wanted));
     let solver = Solver::start(Arc::clone(&source), options.threads)

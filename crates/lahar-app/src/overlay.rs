@@ -5,10 +5,10 @@ use eframe::egui::{
 };
 
 use crate::app_state::AppState;
-use crate::colour::{self, ColourBy};
+use crate::color::{self, ColorBy};
 use crate::controls;
-use crate::hand::Grip;
 use crate::panel::{grouped, millions, real_time};
+use crate::pointer::PointerMode;
 use crate::scenery::round_step;
 use crate::solver::Condition;
 
@@ -35,42 +35,42 @@ pub(crate) fn hand(state: &AppState, ui: &Ui, rect: Rect) {
     let Some([x, y]) = camera.project(position, state.aspect) else {
         return;
     };
-    let centre = rect.center() + 0.5 * vec2(x as f32 * rect.width(), -y as f32 * rect.height());
+    let center = rect.center() + 0.5 * vec2(x as f32 * rect.width(), -y as f32 * rect.height());
     let radius = state.hand.reach / camera.half_height_at(position) * 0.5;
-    let colour = match grip {
-        Grip::Attract => Color32::from_rgb(0x7f, 0xd0, 0x9c),
-        Grip::Repel => colour::JELLY,
-        Grip::Drag => Color32::WHITE,
+    let color = match grip {
+        PointerMode::Attract => Color32::from_rgb(0x7f, 0xd0, 0x9c),
+        PointerMode::Repel => color::JELLY,
+        PointerMode::Drag => Color32::WHITE,
     };
     let painter = ui.painter_at(rect);
     if radius.is_finite() {
         let radius = radius as f32 * rect.height();
-        painter.circle_stroke(centre, radius, Stroke::new(1.5, colour));
+        painter.circle_stroke(center, radius, Stroke::new(1.5, color));
     }
-    painter.circle_filled(centre, 3.0, colour);
+    painter.circle_filled(center, 3.0, color);
 }
 
 /// Bodies that a legend has room for.
 const MOST_NAMED: usize = 12;
 
-/// What the colours mean, under the title.
+/// What the colors mean, under the title.
 pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     let painter = ui.painter_at(rect);
     let font = FontId::proportional(13.0);
-    let Some(facts) = state.facts() else { return };
+    let Some(info) = state.info() else { return };
     let below_title = if shows_numbers(state) { 60.0 } else { 40.0 };
     let corner = rect.left_top() + vec2(14.0, below_title);
-    let named: Option<Vec<(&str, Color32)>> = match state.colour_by {
-        ColourBy::Material => {
-            let swatches = facts.swatches.iter().zip(&state.palette);
+    let named: Option<Vec<(&str, Color32)>> = match state.color_by {
+        ColorBy::Material => {
+            let swatches = info.swatches.iter().zip(&state.palette);
             Some(
                 swatches
-                    .map(|(s, &colour)| (s.name.as_str(), colour))
+                    .map(|(s, &color)| (s.name.as_str(), color))
                     .collect(),
             )
         }
-        ColourBy::Body => {
-            let bodies = facts.bodies.iter().take(MOST_NAMED);
+        ColorBy::Body => {
+            let bodies = info.bodies.iter().take(MOST_NAMED);
             Some(
                 bodies
                     .map(|(name, [r, g, b])| (name.as_str(), Color32::from_rgb(*r, *g, *b)))
@@ -83,9 +83,9 @@ pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
         if named.len() < 2 {
             return; // one needs no telling apart
         }
-        for (i, (name, colour)) in named.into_iter().enumerate() {
+        for (i, (name, color)) in named.into_iter().enumerate() {
             let at = corner + vec2(6.0, 8.0 + 20.0 * i as f32);
-            painter.circle_filled(at, 5.0, colour);
+            painter.circle_filled(at, 5.0, color);
             let at = at + vec2(12.0, 0.0);
             painter.text(at, Align2::LEFT_CENTER, name, font.clone(), INK);
         }
@@ -93,8 +93,8 @@ pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     }
     let shade = Rect::from_min_size(corner - vec2(4.0, 0.0), vec2(128.0, 188.0));
     painter.rect_filled(shade, CornerRadius::same(4), SHADE);
-    let unit = state.colour_by.unit(facts.dimension);
-    let mut title = state.colour_by.name().to_owned();
+    let unit = state.color_by.unit(info.dimension);
+    let mut title = state.color_by.name().to_owned();
     if !unit.is_empty() {
         title = format!("{title} [{unit}]");
     }
@@ -105,8 +105,8 @@ pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     for i in 0..steps {
         let at = |k: i32| bar.bottom() - bar.height() * k as f32 / steps as f32;
         let strip = Rect::from_x_y_ranges(bar.x_range(), at(i + 1)..=at(i));
-        let colour = state.colour_by.along((i as f32 + 0.5) / steps as f32);
-        painter.rect_filled(strip, CornerRadius::ZERO, colour);
+        let color = state.color_by.along((i as f32 + 0.5) / steps as f32);
+        painter.rect_filled(strip, CornerRadius::ZERO, color);
     }
     let (low, high) = state.range.ends();
     for (part, value) in [(0.0, low), (0.5, 0.5 * (low + high)), (1.0, high)] {
@@ -127,14 +127,14 @@ fn short(value: f32) -> String {
     }
 }
 
-/// How long a metre is, in 2D.
+/// How long a meter is, in 2D.
 pub(crate) fn scale_bar(state: &AppState, ui: &Ui, rect: Rect) {
     let Some(camera) = state.camera.as_ref().filter(|camera| camera.dimension == 2) else {
         return;
     };
-    let metre = f64::from(rect.height()) / (2.0 * camera.half_height);
-    let step = round_step(60.0 / metre);
-    let width = (step * metre) as f32;
+    let meter = f64::from(rect.height()) / (2.0 * camera.half_height);
+    let step = round_step(60.0 / meter);
+    let width = (step * meter) as f32;
     let painter = ui.painter_at(rect);
     let end = rect.right_bottom() + vec2(-16.0, -14.0);
     let start = end - vec2(width, 0.0);
@@ -167,11 +167,11 @@ fn shows_numbers(state: &AppState) -> bool {
 
 /// The scene's name and the side's, and the numbers that the panel does not show.
 pub(crate) fn status(state: &AppState, ui: &Ui, rect: Rect, side: usize) {
-    let Some(facts) = state.facts() else { return };
+    let Some(info) = state.info() else { return };
     let painter = ui.painter_at(rect);
     let mut parts = vec![];
     if side == 0 {
-        parts.push(facts.card.title.clone());
+        parts.push(info.card.title.clone());
     }
     if let Some(side) = state
         .sides()
@@ -223,7 +223,7 @@ pub(crate) fn status(state: &AppState, ui: &Ui, rect: Rect, side: usize) {
 
 /// The keys at the upper right, where scenes have their air; the scenes along the bottom.
 pub(crate) fn hints(state: &AppState, ui: &Ui, rect: Rect) {
-    let dimension = state.facts().map_or(2, |facts| facts.dimension);
+    let dimension = state.info().map_or(2, |info| info.dimension);
     let rows = controls::hints(
         state.recorded_frames().is_some(),
         dimension,
@@ -291,7 +291,7 @@ pub(crate) fn messages(state: &mut AppState, ui: &Ui, rect: Rect) {
     state.tell_retries(now);
     if let Some(why) = state.failure() {
         let text = format!("{why}\n\nR restarts the scene, 1 to 9 choose another.");
-        card(&painter, rect, rect.center(), &text, colour::JELLY);
+        card(&painter, rect, rect.center(), &text, color::JELLY);
     } else if state.shown().condition == Condition::Opening {
         let text = format!("Opening {} …", state.scene);
         card(
@@ -314,12 +314,12 @@ pub(crate) fn messages(state: &mut AppState, ui: &Ui, rect: Rect) {
         } else {
             state.notice = None;
         }
-    } else if let Some(facts) = state.facts()
+    } else if let Some(info) = state.info()
         && state.shown().opened > 0
         && state.readouts().time < 3.0
-        && !facts.warnings.is_empty()
+        && !info.warnings.is_empty()
     {
-        let text = facts.warnings.join("\n");
+        let text = info.warnings.join("\n");
         card(
             &painter,
             rect,
@@ -331,7 +331,7 @@ pub(crate) fn messages(state: &mut AppState, ui: &Ui, rect: Rect) {
 }
 
 /// Text on a dark card.
-fn card(painter: &egui::Painter, rect: Rect, centre: Pos2, text: &str, edge: Color32) {
+fn card(painter: &egui::Painter, rect: Rect, center: Pos2, text: &str, edge: Color32) {
     let width = (rect.width() - 60.0).clamp(60.0, 760.0);
     let text = painter.layout(
         text.to_owned(),
@@ -340,7 +340,7 @@ fn card(painter: &egui::Painter, rect: Rect, centre: Pos2, text: &str, edge: Col
         width,
     );
     let size = text.size() + Vec2::splat(28.0);
-    let mut frame = Rect::from_center_size(centre, size);
+    let mut frame = Rect::from_center_size(center, size);
     frame = frame.translate(vec2(0.0, (rect.top() + 6.0 - frame.top()).max(0.0)));
     painter.rect_filled(frame, CornerRadius::same(6), Color32::from_black_alpha(215));
     let outline = egui::epaint::RectShape::stroke(

@@ -10,11 +10,11 @@ use lahar_io::output::Recording;
 use serde_json::Value;
 
 use crate::camera::Camera;
-use crate::colour::{self, ColourBy, Range};
+use crate::color::{self, ColorBy, Range};
 use crate::renderer::{self, Offscreen, View};
+use crate::scene_library;
 use crate::scenery::{Scenery, sprites, usual_radius};
-use crate::scenes::Facts;
-use crate::shelf;
+use crate::scenes::SceneInfo;
 
 /// Why a picture could not be drawn, in words: no adapter, a picture too large for it, an adapter that failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -28,18 +28,18 @@ impl fmt::Display for PaintError {
 
 impl std::error::Error for PaintError {}
 
-/// Draws frames of one run by the window's renderer, all by the same view and colours. Needs a graphics adapter,
+/// Draws frames of one run by the window's renderer, all by the same view and colors. Needs a graphics adapter,
 /// which may be one in software, and no display.
 pub struct Painter {
     offscreen: Offscreen,
     adapter: String,
-    facts: Facts,
+    info: SceneInfo,
     scenery: Scenery,
     camera: Camera,
     aspect: f64,
     pixels: [f32; 2],
     palette: Vec<Color32>,
-    by: ColourBy,
+    by: ColorBy,
     range: Range,
 }
 
@@ -56,36 +56,36 @@ impl Painter {
         first: &Snapshot,
         style: &Style,
     ) -> Result<Self, PaintError> {
-        let facts = shelf::recorded(recording, scene);
+        let info = scene_library::recorded(recording, scene);
         let (offscreen, adapter) =
             Offscreen::new([style.width, style.height], style.samples).map_err(PaintError)?;
-        let scenery = Scenery::new(&facts, Some(first));
+        let scenery = Scenery::new(&info, Some(first));
         let aspect = f64::from(style.width) / f64::from(style.height);
         let (by, ends) = match style.colouring {
-            Colouring::Material => (ColourBy::Material, (0.0, 1.0)),
-            Colouring::Body => (ColourBy::Body, (0.0, 1.0)),
-            Colouring::Speed(high) => (ColourBy::Speed, (0.0, high)),
-            Colouring::Pressure(low, high) => (ColourBy::Pressure, (low, high)),
-            Colouring::Density(low, high) => (ColourBy::Density, (low, high)),
-            Colouring::Jacobian(low, high) => (ColourBy::Jacobian, (low, high)),
+            Colouring::Material => (ColorBy::Material, (0.0, 1.0)),
+            Colouring::Body => (ColorBy::Body, (0.0, 1.0)),
+            Colouring::Speed(high) => (ColorBy::Speed, (0.0, high)),
+            Colouring::Pressure(low, high) => (ColorBy::Pressure, (low, high)),
+            Colouring::Density(low, high) => (ColorBy::Density, (low, high)),
+            Colouring::Jacobian(low, high) => (ColorBy::Jacobian, (low, high)),
         };
         Ok(Self {
             offscreen,
             adapter,
             camera: Camera::fit(
-                facts.dimension,
+                info.dimension,
                 scenery.extent,
-                facts.gravity,
-                facts.angle,
+                info.gravity,
+                info.angle,
                 aspect,
             ),
             scenery,
             aspect,
             pixels: [style.width, style.height].map(|side| side as f32),
-            palette: colour::palette(&facts.swatches),
+            palette: color::palette(&info.swatches),
             by,
             range: Range::of(by, (ends.0 as f32, ends.1 as f32)),
-            facts,
+            info,
         })
     }
 
@@ -99,20 +99,20 @@ impl Painter {
     /// # Errors
     /// The picture is too large for the adapter, or drawing failed; then no other can be drawn.
     pub fn render(&mut self, snapshot: &Snapshot) -> Result<Picture, PaintError> {
-        let colours = (self.by, self.palette.as_slice(), &self.range);
+        let colors = (self.by, self.palette.as_slice(), &self.range);
         let picture = renderer::Picture {
             slot: 0,
-            sprites: Arc::new(sprites(snapshot, &self.facts, &self.scenery, colours)),
-            lines: self.scenery.lines_at(&self.facts, snapshot.time),
+            sprites: Arc::new(sprites(snapshot, &self.info, &self.scenery, colors)),
+            lines: self.scenery.lines_at(&self.info, snapshot.time),
             view: View::new(
                 &self.camera,
                 self.scenery.origin,
                 self.aspect,
                 self.pixels,
-                usual_radius(&self.facts),
+                usual_radius(&self.info),
             ),
-            solid: self.facts.dimension == 3,
-            background: colour::background(&self.facts),
+            solid: self.info.dimension == 3,
+            background: color::background(&self.info),
         };
         self.offscreen.draw(&picture).map_err(PaintError)
     }

@@ -3,7 +3,7 @@
 use eframe::egui::{self, DragValue, RichText, Slider, Ui};
 
 use crate::app_state::{AppState, SPEEDS};
-use crate::colour::ColourBy;
+use crate::color::ColorBy;
 use crate::controls::{Action, Direction};
 use crate::scenes::{Setting, SettingValue};
 use crate::solver::Condition;
@@ -211,8 +211,8 @@ fn settings(state: &mut AppState, ui: &mut Ui) {
 fn scene(state: &mut AppState, ui: &mut Ui) {
     let mut chosen = None;
     let title = state
-        .facts()
-        .map_or_else(|| state.scene.clone(), |facts| facts.card.title.clone());
+        .info()
+        .map_or_else(|| state.scene.clone(), |info| info.card.title.clone());
     ui.horizontal(|ui| {
         let label = ui.label("scene").id;
         egui::ComboBox::from_id_salt("scene")
@@ -286,7 +286,7 @@ fn clock(state: &mut AppState, ui: &mut Ui) {
 
 fn gravity(state: &mut AppState, ui: &mut Ui) {
     let mut gravity = state.gravity;
-    let dimension = state.facts().map_or(2, |facts| facts.dimension);
+    let dimension = state.info().map_or(2, |info| info.dimension);
     let most = 2.0 * state.scene_gravity();
     let mut changed = false;
     for (component, name) in gravity.iter_mut().zip(["x", "y", "z"]).take(dimension) {
@@ -315,7 +315,7 @@ fn gravity(state: &mut AppState, ui: &mut Ui) {
         if ui.button("None").clicked() {
             state.set_gravity([0.0; 3]);
         }
-        let own = state.facts().map(|facts| facts.gravity);
+        let own = state.info().map(|info| info.gravity);
         if ui.button("Scene's").clicked()
             && let Some(own) = own
         {
@@ -325,16 +325,16 @@ fn gravity(state: &mut AppState, ui: &mut Ui) {
 }
 
 fn looks(state: &mut AppState, ui: &mut Ui) {
-    let mut by = state.colour_by;
-    egui::ComboBox::from_label("colours")
+    let mut by = state.color_by;
+    egui::ComboBox::from_label("colors")
         .selected_text(by.name())
         .show_ui(ui, |ui| {
-            for choice in ColourBy::ALL {
+            for choice in ColorBy::ALL {
                 ui.selectable_value(&mut by, choice, choice.name());
             }
         });
-    if by != state.colour_by {
-        state.set_colour_by(by);
+    if by != state.color_by {
+        state.set_color_by(by);
     }
     ui.add(
         Slider::new(&mut state.radius, 0.1..=2.0)
@@ -342,24 +342,24 @@ fn looks(state: &mut AppState, ui: &mut Ui) {
             .fixed_decimals(2),
     )
     .on_hover_text(
-        "Of a particle, in parts of the distance to its neighbours, or of the scene's own",
+        "Of a particle, in parts of the distance to its neighbors, or of the scene's own",
     );
     ui.horizontal(|ui| {
         let label = ui.label("background").id;
         ui.color_edit_button_srgba(&mut state.background)
             .labelled_by(label);
     });
-    if state.colour_by == ColourBy::Material {
+    if state.color_by == ColorBy::Material {
         let names: Vec<String> = state
-            .facts()
-            .map(|facts| facts.swatches.iter().map(|s| s.name.clone()).collect())
+            .info()
+            .map(|info| info.swatches.iter().map(|s| s.name.clone()).collect())
             .unwrap_or_default();
         let mut changed = false;
-        for (colour, name) in state.palette.iter_mut().zip(&names) {
+        for (color, name) in state.palette.iter_mut().zip(&names) {
             ui.horizontal(|ui| {
                 let label = ui.label(name).id;
                 changed |= ui
-                    .color_edit_button_srgba(colour)
+                    .color_edit_button_srgba(color)
                     .labelled_by(label)
                     .changed();
             });
@@ -380,7 +380,7 @@ fn hand(state: &mut AppState, ui: &mut Ui) {
             .text("hand"),
     )
     .on_hover_text("How hard the mouse attracts and repels, pushes and pulls");
-    let dimension = state.facts().map_or(2, |facts| facts.dimension);
+    let dimension = state.info().map_or(2, |info| info.dimension);
     let smallest = state.scenery.smallest(dimension);
     ui.horizontal(|ui| {
         let mut everywhere = state.hand.reach.is_infinite();
@@ -428,8 +428,8 @@ fn readouts(state: &AppState, ui: &mut Ui) {
             }
         }
         row("particles", grouped(now.particles as u64));
-        if let Some(facts) = state.facts() {
-            row("numbers", facts.numbers.clone());
+        if let Some(info) = state.info() {
+            row("numbers", info.numbers.clone());
         }
     });
 }

@@ -7,9 +7,9 @@ use lahar::{Field, Snapshot};
 
 use crate::camera::{V3, add, against, corners, scale, sub};
 use crate::collider_lines::collider_lines;
-use crate::colour::{ColourBy, Range, colours};
+use crate::color::{ColorBy, Range, colors};
 use crate::renderer::{Line, Sprites};
-use crate::scenes::Facts;
+use crate::scenes::SceneInfo;
 
 /// Radius in parts of the spacing: discs that leave no holes between jittered particles.
 const RADIUS_2D: f32 = 1.05;
@@ -28,23 +28,23 @@ pub(crate) struct Scenery {
 }
 
 impl Scenery {
-    pub(crate) fn new(facts: &Facts, snapshot: Option<&Snapshot>) -> Self {
-        let extent = extent(facts, snapshot);
+    pub(crate) fn new(info: &SceneInfo, snapshot: Option<&Snapshot>) -> Self {
+        let extent = extent(info, snapshot);
         let origin = scale(add(extent.0, extent.1), 0.5);
         Self {
             extent,
             origin,
-            lines: Arc::new(outline(facts, extent, origin)),
+            lines: Arc::new(outline(info, extent, origin)),
         }
     }
 
     /// Its lines and those of the colliders, at `time` \[s\].
-    pub(crate) fn lines_at(&self, facts: &Facts, time: f64) -> Arc<Vec<Line>> {
-        if facts.colliders.is_empty() {
+    pub(crate) fn lines_at(&self, info: &SceneInfo, time: f64) -> Arc<Vec<Line>> {
+        if info.colliders.is_empty() {
             return Arc::clone(&self.lines);
         }
         let (extent, origin) = (self.extent, self.origin);
-        let moving = collider_lines(&facts.colliders, time, facts.dimension, extent, origin);
+        let moving = collider_lines(&info.colliders, time, info.dimension, extent, origin);
         Arc::new([self.lines.as_slice(), &moving].concat())
     }
 
@@ -56,8 +56,8 @@ impl Scenery {
 }
 
 /// The radius that particles are drawn with at first, in parts of what sprites take for their spacing.
-pub(crate) fn usual_radius(facts: &Facts) -> f32 {
-    match (facts.angle.particle_radius, facts.dimension) {
+pub(crate) fn usual_radius(info: &SceneInfo) -> f32 {
+    match (info.angle.particle_radius, info.dimension) {
         (Some(_), _) => 1.0,
         (None, 2) => RADIUS_2D,
         (None, _) => RADIUS_3D,
@@ -67,24 +67,24 @@ pub(crate) fn usual_radius(facts: &Facts) -> f32 {
 /// The particles of one side.
 pub(crate) fn sprites(
     snapshot: &Snapshot,
-    facts: &Facts,
+    info: &SceneInfo,
     scenery: &Scenery,
-    (by, palette, range): (ColourBy, &[Color32], &Range),
+    (by, palette, range): (ColorBy, &[Color32], &Range),
 ) -> Sprites {
     let Some(positions) = snapshot.get(Field::Position).map(lahar::Data::to_f64) else {
         return Sprites::default();
     };
     let d = snapshot.dimension;
-    let spacings: Vec<f32> = match (facts.angle.particle_radius, snapshot.get(Field::Volume0)) {
+    let spacings: Vec<f32> = match (info.angle.particle_radius, snapshot.get(Field::Volume0)) {
         (Some(radius), _) => vec![radius as f32; snapshot.count],
         (None, Some(volumes)) => {
             let spacing = |&volume: &f32| if d == 2 { volume.sqrt() } else { volume.cbrt() };
             volumes.to_f32().iter().map(spacing).collect()
         }
         // A recording without volumes: what two particles along a cell's side would have.
-        (None, None) => vec![0.5 * facts.dx as f32; snapshot.count],
+        (None, None) => vec![0.5 * info.dx as f32; snapshot.count],
     };
-    let colours = colours(by, snapshot, facts, palette, range);
+    let colors = colors(by, snapshot, info, palette, range);
     let places = (positions.chunks_exact(d).zip(spacings))
         .map(|(x, spacing)| {
             let mut place = [0.0, 0.0, 0.0, spacing];
@@ -94,15 +94,15 @@ pub(crate) fn sprites(
             place
         })
         .collect();
-    Sprites { places, colours }
+    Sprites { places, colors }
 }
 
 /// The domain, or the box of the particles.
-fn extent(facts: &Facts, snapshot: Option<&Snapshot>) -> (V3, V3) {
-    if let Some((min, max)) = facts.domain {
+fn extent(info: &SceneInfo, snapshot: Option<&Snapshot>) -> (V3, V3) {
+    if let Some((min, max)) = info.domain {
         return (min, max);
     }
-    let d = facts.dimension;
+    let d = info.dimension;
     let mut min = [f64::INFINITY; 3];
     let mut max = [f64::NEG_INFINITY; 3];
     let positions = snapshot
@@ -122,7 +122,7 @@ fn extent(facts: &Facts, snapshot: Option<&Snapshot>) -> (V3, V3) {
             (min[i], max[i]) = (0.0, 1.0);
         } else {
             // Room to move in.
-            let room = (0.5 * (max[i] - min[i])).max(4.0 * facts.dx);
+            let room = (0.5 * (max[i] - min[i])).max(4.0 * info.dx);
             (min[i], max[i]) = (min[i] - room, max[i] + room);
         }
     }
@@ -130,7 +130,7 @@ fn extent(facts: &Facts, snapshot: Option<&Snapshot>) -> (V3, V3) {
 }
 
 /// The domain's edges; in 3D, a grid on its floor too.
-fn outline(facts: &Facts, (min, max): (V3, V3), origin: V3) -> Vec<Line> {
+fn outline(info: &SceneInfo, (min, max): (V3, V3), origin: V3) -> Vec<Line> {
     let mut lines = vec![];
     let mut line = |a: V3, b: V3, half_width: f32, opacity: u8| {
         let local = |p: V3| sub(p, origin).map(|c| c as f32);
@@ -138,22 +138,22 @@ fn outline(facts: &Facts, (min, max): (V3, V3), origin: V3) -> Vec<Line> {
             start: local(a),
             half_width,
             end: local(b),
-            colour: [0xa9, 0xc7, 0xd6, opacity],
+            color: [0xa9, 0xc7, 0xd6, opacity],
         });
     };
-    if facts.domain.is_some() {
+    if info.domain.is_some() {
         let corners = corners(min, max);
         for i in 0..8_usize {
-            for axis in 0..facts.dimension {
+            for axis in 0..info.dimension {
                 let j = i | 1 << axis;
-                if j != i && (facts.dimension == 3 || j < 4) {
+                if j != i && (info.dimension == 3 || j < 4) {
                     line(corners[i], corners[j], 0.7, 150);
                 }
             }
         }
     }
-    if facts.dimension == 3 {
-        let up = against(facts.gravity);
+    if info.dimension == 3 {
+        let up = against(info.gravity);
         let vertical = (0..3).find(|&i| up[i] != 0.0).unwrap_or(1);
         let floor = if up[vertical] > 0.0 {
             min[vertical]

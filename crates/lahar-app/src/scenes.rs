@@ -5,7 +5,7 @@ use lahar_io::image::Picture;
 use lahar_io::output::Recording;
 use lahar_io::scene::{ColliderInfo, Controls};
 
-use crate::colour::ColourBy;
+use crate::color::ColorBy;
 
 /// A scene as lists show it.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,7 +22,7 @@ pub struct SceneCard {
 
 /// What a material is drawn as.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Look {
+pub enum MaterialKind {
     /// Water and what flows like it.
     Liquid,
     /// Elastic bodies.
@@ -42,14 +42,14 @@ pub struct Swatch {
     /// The material's name or the body's.
     pub name: String,
     /// What it is drawn as.
-    pub look: Look,
-    /// Its colour; `None`: its look's.
-    pub colour: Option<[u8; 3]>,
+    pub look: MaterialKind,
+    /// Its color; `None`: its look's.
+    pub color: Option<[u8; 3]>,
 }
 
 /// What stays the same while a scene runs.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Facts {
+pub struct SceneInfo {
     /// How lists show it.
     pub card: SceneCard,
     /// 2 or 3.
@@ -70,7 +70,7 @@ pub struct Facts {
     pub swatches: Vec<Swatch>,
     /// Index into `swatches`, by the number of a body; a body beyond the end is drawn as the first.
     pub body_swatches: Vec<usize>,
-    /// Bodies by number: their names, and what they are drawn in where colours tell bodies apart.
+    /// Bodies by number: their names, and what they are drawn in where colors tell bodies apart.
     pub bodies: Vec<(String, [u8; 3])>,
     /// How the scene wants to be looked at.
     pub angle: Angle,
@@ -85,15 +85,15 @@ pub struct Facts {
 }
 
 /// A scene, ready to be shown.
-pub struct Stage {
+pub struct OpenedScene {
     /// What stays the same.
-    pub facts: Facts,
+    pub info: SceneInfo,
     /// What moves.
-    pub footage: Footage,
+    pub content: SceneContent,
 }
 
 /// What moves.
-pub enum Footage {
+pub enum SceneContent {
     /// A simulation at its start.
     Simulation(Box<Driver>),
     /// A finished run.
@@ -148,13 +148,13 @@ pub struct Angle {
     pub field_of_view: Option<f64>,
     /// Radius of a particle as drawn \[m\]; `None`: from the particles' spacing.
     pub particle_radius: Option<f64>,
-    /// Colour behind everything.
+    /// Color behind everything.
     pub background: Option<[u8; 3]>,
-    /// What particles are coloured by at first.
-    pub colour_by: ColourBy,
+    /// What particles are colored by at first.
+    pub color_by: ColorBy,
 }
 
-/// A shelf of scenes. Called from the window's and from the solver's thread.
+/// A library of scenes. Called from the window's and from the solver's thread.
 pub trait SceneSource: Send + Sync {
     /// The scenes to choose from; keys 1 to 9 open the first nine.
     fn list(&self) -> Vec<SceneCard>;
@@ -163,7 +163,7 @@ pub trait SceneSource: Send + Sync {
     ///
     /// # Errors
     /// What is wrong with the scene and where, for people to read.
-    fn open(&self, name_or_path: &str, changes: &Changes) -> Result<Stage, String>;
+    fn open(&self, name_or_path: &str, changes: &Changes) -> Result<OpenedScene, String>;
 
     /// A small picture of a scene for lists, no larger than `size` pixels; takes its time.
     fn thumbnail(&self, _name: &str, _size: [u32; 2]) -> Option<Picture> {

@@ -5,9 +5,9 @@ use eframe::egui::{self, PointerButton, Rect, Sense, Ui, vec2};
 use crate::app_state::AppState;
 use crate::camera::sub;
 use crate::controls::{Action, actions, held_direction};
-use crate::hand::{Grip, within};
 use crate::overlay;
 use crate::panel::{panel, player};
+use crate::pointer::{PointerMode, within};
 use crate::scene_list::scene_list;
 
 /// Everything in the window: keys, panel, scene, and what lies over it.
@@ -22,7 +22,7 @@ pub fn window(state: &mut AppState, ui: &mut Ui) {
     if let Some(frames) = state.recorded_frames() {
         egui::Panel::bottom("player").show(ui, |ui| player(state, ui, frames));
     }
-    // Without a fill: the picture covers it, or the window's own colour shows.
+    // Without a fill: the picture covers it, or the window's own color shows.
     egui::CentralPanel::default()
         .frame(egui::Frame::NONE)
         .show(ui, |ui| {
@@ -92,7 +92,7 @@ fn scene_aspect(state: &AppState) -> f64 {
     const SOLID: f64 = 1.4;
     let (min, max) = state.scenery.extent;
     let size = sub(max, min);
-    if state.facts().is_some_and(|facts| facts.dimension == 3) || size[1] <= 0.0 {
+    if state.info().is_some_and(|info| info.dimension == 3) || size[1] <= 0.0 {
         SOLID
     } else {
         size[0] / size[1]
@@ -135,7 +135,7 @@ fn pointer(state: &mut AppState, ui: &Ui, cells: &[Rect], response: &egui::Respo
     let side = over.and_then(|at| cells.iter().position(|cell| cell.contains(at)));
     let side = side.unwrap_or(0);
     let rect = cells[side];
-    let solid = state.facts().is_some_and(|facts| facts.dimension == 3);
+    let solid = state.info().is_some_and(|info| info.dimension == 3);
     let (modifiers, velocity, scroll, pinch) = ui.input(|input| {
         (
             input.modifiers,
@@ -170,7 +170,7 @@ fn pointer(state: &mut AppState, ui: &Ui, cells: &[Rect], response: &egui::Respo
     let grip = if recorded {
         None
     } else if modifiers.ctrl && left {
-        Some(Grip::Drag)
+        Some(PointerMode::Drag)
     } else if solid && !modifiers.shift {
         None
     } else if left {

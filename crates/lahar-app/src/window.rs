@@ -13,7 +13,7 @@ use crate::app_state::{AppState, Effect};
 use crate::meter::Meter;
 use crate::scenes::SceneSource;
 use crate::solver::Solver;
-use crate::{colour, renderer, screenshot, view};
+use crate::{color, renderer, screenshot, view};
 
 /// What eframe runs.
 pub(crate) struct Window {
@@ -140,11 +140,11 @@ impl eframe::App for Window {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        colour::BACKGROUND.to_normalized_gamma_f32()
+        color::BACKGROUND.to_normalized_gamma_f32()
     }
 }
 
-/// Dark, and in the scene's colours.
+/// Dark, and in the scene's colors.
 pub(crate) fn style(context: &egui::Context) {
     context.set_theme(egui::Theme::Dark);
     context.style_mut_of(egui::Theme::Dark, |style| {

@@ -3,7 +3,7 @@
 
     latency.py X Y KEY [TIMES]      on $DISPLAY, where the window is open and has the keyboard
 
-X, Y: a pixel of the screen that KEY changes each time, like one within the water for c (colours).
+X, Y: a pixel of the screen that KEY changes each time, like one within the water for c (colors).
 Needs libX11 and libXtst, which xdotool brings. window.sh's LATENCY=1 calls it.
 """
 

@@ -87,7 +87,7 @@ if [ -n "${MEASURE:-}" ]; then
     read -r x y <<<"$(xdotool getwindowgeometry --shell "$window" | awk -F= '/^X/ { x = $2 } /^Y/ { y = $2 } END { print x, y }')"
     # While it computes: the empty corner of the scene, where the hints come and go.
     python3 "$here/latency.py" $((x + 1160)) $((y + 30)) h
-    # By way of the solver, in the water at the floor's left; paused, lest the water change its colour.
+    # By way of the solver, in the water at the floor's left; paused, lest the water change its color.
     press space
     python3 "$here/latency.py" $((x + 330)) $((y + 600)) c
     shut

@@ -651,6 +651,7 @@ mod tests {
     #[test]
     fn output_and_checkpoints_are_due_by_frames_and_by_minutes() {
         let mut schedule = Schedule::of_scene(&small_dam_break());
+        schedule.frame_end = FrameEnd::Open;
         schedule.checkpoint_every = 3;
         let mut driver = Driver::new(stiff_jelly(), schedule);
         assert!(driver.start().output_due);
@@ -659,10 +660,7 @@ mod tests {
             driver.pump_substeps(1);
             let frame = driver.end_frame();
             due.push((frame.output_due, frame.checkpoint_due));
-            assert_eq!(
-                driver.checkpoint().is_some(),
-                driver.frame() == frame.number
-            );
+            assert!(driver.checkpoint().is_some());
             assert!(
                 driver.checkpoint().is_none(),
                 "nothing happened since the last"

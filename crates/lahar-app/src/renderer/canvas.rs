@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eframe::egui::Color32;
 use eframe::egui_wgpu::wgpu;
 
-use super::pipelines::{COLOUR, DEPTH, Pipelines};
+use super::pipelines::{COLOR, DEPTH, Pipelines};
 use super::texels::Texels;
 use super::{Picture, View};
 
@@ -21,7 +21,7 @@ pub(super) struct Canvas {
 /// The picture's texture.
 struct Target {
     size: [u32; 2],
-    colour: wgpu::TextureView,
+    color: wgpu::TextureView,
     depth: wgpu::TextureView,
     shown: wgpu::BindGroup,
 }
@@ -54,7 +54,7 @@ impl Canvas {
 
     /// The texture with the picture; `None` before the first.
     pub(super) fn texture(&self) -> Option<&wgpu::Texture> {
-        self.target.as_ref().map(|target| target.colour.texture())
+        self.target.as_ref().map(|target| target.color.texture())
     }
 
     /// Draws the picture onto its texture, of `samples` × `samples` texels a pixel, if it is not there already.
@@ -102,11 +102,11 @@ impl Canvas {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("particles"),
             color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &target.colour,
+                view: &target.color,
                 depth_slice: None,
                 resolve_target: None,
                 ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(clear_colour(picture.background)),
+                    load: wgpu::LoadOp::Clear(clear_color(picture.background)),
                     store: wgpu::StoreOp::Store,
                 },
             })],
@@ -160,9 +160,9 @@ fn make_target(device: &wgpu::Device, pipelines: &Pipelines, size: [u32; 2]) -> 
             .create_view(&wgpu::TextureViewDescriptor::default())
     };
     let attachment = wgpu::TextureUsages::RENDER_ATTACHMENT;
-    let colour = texture(
+    let color = texture(
         "picture",
-        COLOUR,
+        COLOR,
         attachment | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
     );
     let shown = device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -171,7 +171,7 @@ fn make_target(device: &wgpu::Device, pipelines: &Pipelines, size: [u32; 2]) -> 
         entries: &[
             wgpu::BindGroupEntry {
                 binding: 0,
-                resource: wgpu::BindingResource::TextureView(&colour),
+                resource: wgpu::BindingResource::TextureView(&color),
             },
             wgpu::BindGroupEntry {
                 binding: 1,
@@ -182,13 +182,13 @@ fn make_target(device: &wgpu::Device, pipelines: &Pipelines, size: [u32; 2]) -> 
     Target {
         size,
         depth: texture("depth", DEPTH, attachment),
-        colour,
+        color,
         shown,
     }
 }
 
-fn clear_colour(colour: Color32) -> wgpu::Color {
-    let [r, g, b, a] = colour.to_array().map(|c| f64::from(c) / 255.0);
+fn clear_color(color: Color32) -> wgpu::Color {
+    let [r, g, b, a] = color.to_array().map(|c| f64::from(c) / 255.0);
     wgpu::Color { r, g, b, a }
 }
 

@@ -12,7 +12,7 @@ struct View {
 struct Corner {
     @builtin(position) position: vec4<f32>,
     @location(0) across: f32,               // pixels from the middle
-    @location(1) colour: vec4<f32>,
+    @location(1) color: vec4<f32>,
     @location(2) half_width: f32,
 };
 
@@ -22,7 +22,7 @@ fn corner(
     @location(0) start: vec3<f32>,
     @location(1) half_width: f32,
     @location(2) end: vec3<f32>,
-    @location(3) colour: vec4<f32>,
+    @location(3) color: vec4<f32>,
 ) -> Corner {
     var a = (scene.view * vec4<f32>(start, 1.0)).xyz;
     var b = (scene.view * vec4<f32>(end, 1.0)).xyz;
@@ -43,13 +43,13 @@ fn corner(
     var out: Corner;
     out.position = at + vec4<f32>(side * reach * 2.0 / scene.pixels * at.w, 0.0, 0.0);
     out.across = (f32(index & 1u) * 2.0 - 1.0) * reach;
-    out.colour = colour;
+    out.color = color;
     out.half_width = half_width;
     return out;
 }
 
 @fragment
 fn line(in: Corner) -> @location(0) vec4<f32> {
-    let cover = clamp(in.half_width + 0.5 - abs(in.across), 0.0, 1.0) * in.colour.a;
-    return vec4<f32>(in.colour.rgb * cover, cover);
+    let cover = clamp(in.half_width + 0.5 - abs(in.across), 0.0, 1.0) * in.color.a;
+    return vec4<f32>(in.color.rgb * cover, cover);
 }

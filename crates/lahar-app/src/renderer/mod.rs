@@ -29,10 +29,10 @@ use pipelines::Pipelines;
 /// Particles as the shader takes them, one after the other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sprites {
-    /// Position less the picture's origin, and distance to the neighbours at rest \[m\].
+    /// Position less the picture's origin, and distance to the neighbors at rest \[m\].
     pub places: Vec<[f32; 4]>,
     /// Red, green, blue, 255; as many as places.
-    pub colours: Vec<[u8; 4]>,
+    pub colors: Vec<[u8; 4]>,
 }
 
 /// A straight line as the shader takes it.
@@ -46,7 +46,7 @@ pub struct Line {
     /// Less the picture's origin \[m\].
     pub end: [f32; 3],
     /// Red, green, blue, opacity.
-    pub colour: [u8; 4],
+    pub color: [u8; 4],
 }
 
 /// What the camera tells the shaders.

@@ -7,10 +7,10 @@ use lahar_io::image;
 
 use super::Picture;
 use super::canvas::Canvas;
-use super::pipelines::{COLOUR, Pipelines};
+use super::pipelines::{COLOR, Pipelines};
 use super::texels::Texels;
 
-/// Bytes of a pixel in [`COLOUR`].
+/// Bytes of a pixel in [`COLOR`].
 const PIXEL: usize = 4;
 
 /// A graphics adapter that draws one picture after the other.
@@ -92,7 +92,7 @@ impl Offscreen {
             }
         });
         let room = device.limits().max_texture_dimension_2d / size[0].max(size[1]).max(1);
-        let pipelines = Pipelines::new(&device, COLOUR);
+        let pipelines = Pipelines::new(&device, COLOR);
         let offscreen = Self {
             canvas: Canvas::new(&device, &pipelines),
             device,

@@ -10,15 +10,15 @@ struct View {
 };
 @group(0) @binding(0) var<uniform> scene: View;
 @group(0) @binding(1) var places: texture_2d<f32>;      // position, spacing
-@group(0) @binding(2) var colours: texture_2d<f32>;
+@group(0) @binding(2) var colors: texture_2d<f32>;
 
 const WIDTH: u32 = 2048u;                               // particles in a row
 
 struct Corner {
     @builtin(position) position: vec4<f32>,
     @location(0) at: vec2<f32>,             // -1..1 over the disc
-    @location(1) colour: vec4<f32>,
-    @location(2) centre: vec3<f32>,         // on the camera's axes
+    @location(1) color: vec4<f32>,
+    @location(2) center: vec3<f32>,         // on the camera's axes
     @location(3) radius: f32,
 };
 
@@ -35,18 +35,18 @@ fn corner(@builtin(vertex_index) index: u32) -> Corner {
     let k = index % 6u;
     let which = select(k, select(5u - k, 3u, k == 5u), k > 2u);
     var out: Corner;
-    let centre = (scene.view * vec4<f32>(position, 1.0)).xyz;
+    let center = (scene.view * vec4<f32>(position, 1.0)).xyz;
     // Never smaller than a pixel or so: a far particle should fade, not flicker.
-    let w = scene.projection[2][3] * centre.z + scene.projection[3][3];
+    let w = scene.projection[2][3] * center.z + scene.projection[3][3];
     let pixel = 2.0 * w / (scene.projection[1][1] * scene.pixels.y);
     let radius = max(scene.radius * spacing, 0.7 * pixel);
     let at = vec2<f32>(f32(which & 1u), f32(which >> 1u)) * 2.0 - 1.0;
     // Room for half a pixel of soft edge.
     let reach = 1.0 + 0.5 * pixel / radius;
     out.at = at * reach;
-    out.position = scene.projection * vec4<f32>(centre + vec3<f32>(out.at * radius, 0.0), 1.0);
-    out.colour = textureLoad(colours, texel, 0);
-    out.centre = centre;
+    out.position = scene.projection * vec4<f32>(center + vec3<f32>(out.at * radius, 0.0), 1.0);
+    out.color = textureLoad(colors, texel, 0);
+    out.center = center;
     out.radius = radius;
     return out;
 }
@@ -56,11 +56,11 @@ fn disc(in: Corner) -> @location(0) vec4<f32> {
     let r = length(in.at);
     let soft = fwidth(r);
     let cover = clamp((1.0 - r) / max(soft, 1e-6) + 0.5, 0.0, 1.0);
-    return vec4<f32>(in.colour.rgb * cover, cover);
+    return vec4<f32>(in.color.rgb * cover, cover);
 }
 
 struct Ball {
-    @location(0) colour: vec4<f32>,
+    @location(0) color: vec4<f32>,
     @builtin(frag_depth) depth: f32,
 };
 
@@ -75,10 +75,10 @@ fn ball(in: Corner) -> Ball {
     let shade = 0.42 + 0.58 * max(dot(normal, light), 0.0);
     // Upward faces take a little of the sky.
     let sky = 0.10 * max(normal.y, 0.0);
-    let z = in.centre.z + normal.z * in.radius;
+    let z = in.center.z + normal.z * in.radius;
     let clip = scene.projection * vec4<f32>(0.0, 0.0, z, 1.0);
     var out: Ball;
-    out.colour = vec4<f32>(in.colour.rgb * shade + vec3<f32>(sky), 1.0);
+    out.color = vec4<f32>(in.color.rgb * shade + vec3<f32>(sky), 1.0);
     out.depth = clip.z / clip.w;
     return out;
 }

@@ -15,7 +15,7 @@ const WIDTH: u32 = 2048;
 /// Two textures and the camera, bound.
 pub(super) struct Texels {
     places: wgpu::Texture,
-    colours: wgpu::Texture,
+    colors: wgpu::Texture,
     pub(super) group: wgpu::BindGroup,
     /// Particles in it.
     pub(super) count: u32,
@@ -55,7 +55,7 @@ impl Texels {
             })
         };
         let places = texture("places", wgpu::TextureFormat::Rgba32Float);
-        let colours = texture("colours", wgpu::TextureFormat::Rgba8Unorm);
+        let colors = texture("colors", wgpu::TextureFormat::Rgba8Unorm);
         let read =
             |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -72,13 +72,13 @@ impl Texels {
                 },
                 wgpu::BindGroupEntry {
                     binding: 2,
-                    resource: wgpu::BindingResource::TextureView(&read(&colours)),
+                    resource: wgpu::BindingResource::TextureView(&read(&colors)),
                 },
             ],
         });
         Self {
             places,
-            colours,
+            colors,
             group,
             count: 0,
         }
@@ -98,7 +98,7 @@ impl Texels {
         let count = sprites.places.len().min(self.room());
         self.count = count as u32;
         write(queue, &self.places, &sprites.places[..count]);
-        write(queue, &self.colours, &sprites.colours[..count]);
+        write(queue, &self.colors, &sprites.colors[..count]);
     }
 }
 

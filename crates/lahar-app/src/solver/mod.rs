@@ -21,12 +21,12 @@ use lahar::{Command, DtLimit, Field, Snapshot};
 use lahar_io::scene::Comparison;
 use triple_buffer::{Output, TripleBuffer};
 
-use crate::scenes::{Changes, Facts, SceneSource};
+use crate::scenes::{Changes, SceneInfo, SceneSource};
 use worker::Worker;
 
 /// A scene, and how it is to run.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Wanted {
+pub struct SceneRequest {
     /// By name or path; the folder of a run is replayed.
     pub scene: String,
     /// Laid over it.
@@ -39,7 +39,7 @@ pub struct Wanted {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Order {
     /// Opens a scene.
-    Open(Wanted),
+    Open(SceneRequest),
     /// The same scene, from its start.
     Restart,
     /// Stops the clock, or lets it run.
@@ -53,7 +53,7 @@ pub enum Order {
     /// Fields that snapshots should have, beyond [`ALWAYS`].
     Fields(Vec<Field>),
     /// Passed on to the simulation.
-    Tell(Command),
+    Command(Command),
 }
 
 /// Fields that every snapshot has.
@@ -121,7 +121,7 @@ pub struct Shown {
     /// Grows whenever a scene is opened or restarted.
     pub opened: u64,
     /// `None` before the first scene is built.
-    pub facts: Option<Arc<Facts>>,
+    pub info: Option<Arc<SceneInfo>>,
     /// What there is to see; none before the first scene is built.
     pub sides: Vec<Side>,
     /// What the solver is doing.

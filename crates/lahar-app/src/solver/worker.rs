@@ -11,8 +11,8 @@ use triple_buffer::Input;
 use super::clock::{Clock, Rate};
 use super::live::{Live, Runner};
 use super::replay::Replay;
-use super::{ALWAYS, Condition, News, Order, Shown, Wanted, panic_report};
-use crate::scenes::{Footage, SceneSource, Stage};
+use super::{ALWAYS, Condition, News, Order, SceneRequest, Shown, panic_report};
+use crate::scenes::{OpenedScene, SceneContent, SceneSource};
 
 /// Snapshots are not taken more often than this, unless the window waits for one.
 const SNAPSHOT_INTERVAL: Duration = Duration::from_millis(8);
@@ -32,7 +32,7 @@ pub(super) struct Worker {
     output: Input<Shown>,
     news: News,
     shown: Shown,
-    wanted: Option<Wanted>,
+    wanted: Option<SceneRequest>,
     play: Play,
     paused: bool,
     speed: f64,
@@ -139,7 +139,7 @@ impl Worker {
                 self.fields.extend(extra);
                 self.publish();
             }
-            Order::Tell(command) => {
+            Order::Command(command) => {
                 if let Play::Live(live) = &mut self.play {
                     live.command(command);
                 }
@@ -163,25 +163,25 @@ impl Worker {
         self.publish();
     }
 
-    fn begin(&mut self, stages: Vec<(String, Stage)>) -> Result<(), String> {
+    fn begin(&mut self, stages: Vec<(String, OpenedScene)>) -> Result<(), String> {
         let mut simulations = vec![];
-        let mut facts = None;
+        let mut info = None;
         let mut replay = None;
         for (title, stage) in stages {
-            facts.get_or_insert(stage.facts);
-            match stage.footage {
-                Footage::Simulation(driver) => simulations.push(Runner::new(title, *driver)),
-                Footage::Recording(recording) => replay = Some(Replay::new(*recording)?),
+            info.get_or_insert(stage.info);
+            match stage.content {
+                SceneContent::Simulation(driver) => simulations.push(Runner::new(title, *driver)),
+                SceneContent::Recording(recording) => replay = Some(Replay::new(*recording)?),
             }
         }
-        let Some(facts) = facts else {
+        let Some(info) = info else {
             return Ok(());
         };
         self.play = match replay {
             Some(replay) => Play::Replay(Box::new(replay)),
-            None => Play::Live(Live::new(simulations, facts.frame_rate)),
+            None => Play::Live(Live::new(simulations, info.frame_rate)),
         };
-        self.shown.facts = Some(Arc::new(facts));
+        self.shown.info = Some(Arc::new(info));
         self.shown.condition = Condition::Running;
         self.seek = None;
         self.real_time = Rate::from(0.0);
@@ -320,7 +320,10 @@ impl Worker {
 }
 
 /// What is wanted, built: one stage, or one for each value of a comparison.
-fn stages(source: &dyn SceneSource, wanted: &Wanted) -> Result<Vec<(String, Stage)>, String> {
+fn stages(
+    source: &dyn SceneSource,
+    wanted: &SceneRequest,
+) -> Result<Vec<(String, OpenedScene)>, String> {
     let Some(comparison) = &wanted.comparison else {
         let stage = source.open(&wanted.scene, &wanted.changes)?;
         return Ok(vec![(String::new(), stage)]);
@@ -328,9 +331,9 @@ fn stages(source: &dyn SceneSource, wanted: &Wanted) -> Result<Vec<(String, Stag
     (comparison.titles().zip(comparison.overrides(&wanted.changes)))
         .map(|(title, changes)| {
             let stage = source.open(&wanted.scene, &changes)?;
-            match stage.footage {
-                Footage::Simulation(_) => Ok((title, stage)),
-                Footage::Recording(_) => Err(format!(
+            match stage.content {
+                SceneContent::Simulation(_) => Ok((title, stage)),
+                SceneContent::Recording(_) => Err(format!(
                     "{} is a finished run: it cannot be compared with other settings of itself; open its scene",
                     wanted.scene
                 )),

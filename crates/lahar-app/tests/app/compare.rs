@@ -11,8 +11,8 @@ fn transfers() -> Comparison {
     "transfer=apic,pic".parse().unwrap()
 }
 
-fn compared(scene: &str) -> Wanted {
-    Wanted {
+fn compared(scene: &str) -> SceneRequest {
+    SceneRequest {
         comparison: Some(transfers()),
         ..alone(scene)
     }
@@ -25,7 +25,7 @@ fn v_runs_two_settings_and_v_again_the_scene_alone() {
     harness.state_mut().draft.choose(&transfer);
     harness.key_press(Key::V);
     harness.run();
-    let asked = Wanted {
+    let asked = SceneRequest {
         comparison: Some(r#"transfer="apic","pic""#.parse().unwrap()),
         ..alone("dam-break")
     };
@@ -58,7 +58,7 @@ fn the_panel_compares_numbers_too() {
 
 #[test]
 fn sides_run_in_step_each_as_it_would_alone() {
-    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
+    let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Fields(vec![Field::Velocity]));
     solver.order(Order::Open(compared("dam-break")));
     let shown = wait(&mut solver, |shown| {
@@ -77,9 +77,9 @@ fn sides_run_in_step_each_as_it_would_alone() {
     );
 
     // One of them alone, to the same frame.
-    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
+    let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Fields(vec![Field::Velocity]));
-    solver.order(Order::Open(Wanted {
+    solver.order(Order::Open(SceneRequest {
         changes: vec![("transfer".into(), "pic".into())],
         ..alone("dam-break")
     }));
@@ -98,7 +98,7 @@ fn sides_run_in_step_each_as_it_would_alone() {
 
 #[test]
 fn a_substep_keeps_the_sides_together() {
-    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
+    let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Pause(true));
     solver.order(Order::Open(compared("dam-break")));
     for _ in 0..3 {
@@ -111,8 +111,8 @@ fn a_substep_keeps_the_sides_together() {
 
 #[test]
 fn what_goes_wrong_on_a_side_is_said_with_its_title() {
-    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
-    solver.order(Order::Open(Wanted {
+    let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
+    solver.order(Order::Open(SceneRequest {
         comparison: Some("transfer=apic,magic".parse().unwrap()),
         ..alone("dam-break")
     }));

@@ -29,7 +29,11 @@ fn renderer() -> Option<WgpuTestRenderer> {
 fn water_is_seen_where_it_is() {
     for scene in ["dam-break", "dam-break-3d"] {
         let Some(renderer) = renderer() else { return };
-        let mut state = AppState::new(support::Blocks.list(), DEFAULT_SCENE, Some(alone(scene)));
+        let mut state = AppState::new(
+            support::TestScenes.list(),
+            DEFAULT_SCENE,
+            Some(alone(scene)),
+        );
         state.show_panel = false;
         state.show_hints = false;
         state.receive(shown(scene, 1));
@@ -44,16 +48,16 @@ fn water_is_seen_where_it_is() {
 
         let state = harness.state();
         let camera = state.camera.as_ref().unwrap();
-        let colour_at = |point| {
+        let color_at = |point| {
             let [x, y] = camera.project(point, state.aspect).unwrap();
             let at = [(0.5 + 0.5 * x) * 600.0, (0.5 - 0.5 * y) * 400.0];
             let [r, g, b, _] = picture.get_pixel(at[0] as u32, at[1] as u32).0;
             [r, g, b].map(i32::from)
         };
         // Teal in the middle of the block, the background in the far corner.
-        let [r, g, b] = colour_at([0.5, 0.6, if scene == "dam-break" { 0.0 } else { 0.5 }]);
+        let [r, g, b] = color_at([0.5, 0.6, if scene == "dam-break" { 0.0 } else { 0.5 }]);
         assert!(g > r + 30 && b > r + 30, "{scene}: {r} {g} {b}");
-        let [r, g, b] = colour_at([1.9, 1.1, if scene == "dam-break" { 0.0 } else { 0.5 }]);
+        let [r, g, b] = color_at([1.9, 1.1, if scene == "dam-break" { 0.0 } else { 0.5 }]);
         assert_eq!([r, g, b], [0x11, 0x2f, 0x41], "{scene}");
     }
 }

@@ -3,20 +3,20 @@
 use super::*;
 use eframe::egui::{Event, Key, Modifiers};
 use lahar::Command;
-use lahar_app::colour::ColourBy;
+use lahar_app::color::ColorBy;
 
 fn gravity(harness: &mut Harness<'_, AppState>, key: Key) -> [f64; 3] {
     harness.key_press(key);
     harness.run();
     match orders(harness)[..] {
-        [Order::Tell(Command::Gravity(gravity))] => gravity,
+        [Order::Command(Command::Gravity(gravity))] => gravity,
         ref other => panic!("{other:?}"),
     }
 }
 
 #[test]
 fn the_default_scene_opens_first_and_shift_r_comes_back_to_it() {
-    let mut state = AppState::new(support::Blocks.list(), DEFAULT_SCENE, None);
+    let mut state = AppState::new(support::TestScenes.list(), DEFAULT_SCENE, None);
     assert_eq!(state.take_effects(), [Effect::Order(open("dam-break"))]);
     let mut harness = harness("double-dam");
     harness.key_press_modifiers(Modifiers::SHIFT, Key::R);
@@ -111,19 +111,19 @@ fn space_pauses_period_steps_plus_and_minus_change_speed() {
 }
 
 #[test]
-fn c_goes_through_the_colours_and_asks_for_their_fields() {
+fn c_goes_through_the_colors_and_asks_for_their_fields() {
     let mut harness = harness("dam-break");
     for by in [
-        ColourBy::Body,
-        ColourBy::Speed,
-        ColourBy::Pressure,
-        ColourBy::Density,
-        ColourBy::Jacobian,
-        ColourBy::Material,
+        ColorBy::Body,
+        ColorBy::Speed,
+        ColorBy::Pressure,
+        ColorBy::Density,
+        ColorBy::Jacobian,
+        ColorBy::Material,
     ] {
         harness.key_press(Key::C);
         harness.run();
-        assert_eq!(harness.state().colour_by, by);
+        assert_eq!(harness.state().color_by, by);
         assert_eq!(orders(&mut harness), [Order::Fields(by.fields())]);
     }
 }
@@ -194,7 +194,7 @@ fn the_list_reaches_every_scene_by_keys() {
 fn where_a_scene_wants_it_gravity_acts_while_a_key_is_held() {
     let mut harness = harness("held");
     let told = |harness: &mut Harness<'_, AppState>| match orders(harness)[..] {
-        [Order::Tell(Command::Gravity(gravity))] => gravity,
+        [Order::Command(Command::Gravity(gravity))] => gravity,
         ref other => panic!("{other:?}"),
     };
     assert_eq!(

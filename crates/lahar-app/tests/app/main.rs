@@ -17,14 +17,14 @@ use eframe::egui::Vec2;
 use egui_kittest::Harness;
 use lahar_app::app_state::{AppState, Effect};
 use lahar_app::scenes::SceneSource;
-use lahar_app::solver::{Order, Readouts, Shown, Solver, Wanted};
+use lahar_app::solver::{Order, Readouts, SceneRequest, Shown, Solver};
 use lahar_app::{DEFAULT_SCENE, view};
 
 /// A scene alone and as it is.
-fn alone(scene: &str) -> Wanted {
-    Wanted {
+fn alone(scene: &str) -> SceneRequest {
+    SceneRequest {
         scene: scene.into(),
-        ..Wanted::default()
+        ..SceneRequest::default()
     }
 }
 
@@ -42,7 +42,7 @@ fn first(shown: &Shown) -> Readouts {
 
 /// What the solver would show of a scene at its start.
 fn shown(name: &str, opened: u64) -> Shown {
-    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
+    let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Pause(true));
     solver.order(open(name));
     let mut shown = wait(&mut solver, |shown| shown.opened > 0);
@@ -70,8 +70,12 @@ fn harness(scene: &str) -> Harness<'static, AppState> {
 }
 
 fn harness_of(shown: Shown) -> Harness<'static, AppState> {
-    let scene = shown.facts.as_ref().unwrap().card.name.clone();
-    let mut state = AppState::new(support::Blocks.list(), DEFAULT_SCENE, Some(alone(&scene)));
+    let scene = shown.info.as_ref().unwrap().card.name.clone();
+    let mut state = AppState::new(
+        support::TestScenes.list(),
+        DEFAULT_SCENE,
+        Some(alone(&scene)),
+    );
     state.receive(shown);
     state.take_effects();
     let mut harness = Harness::builder()

@@ -3,7 +3,7 @@
 use super::*;
 use eframe::egui::{self, Modifiers, PointerButton, pos2};
 use lahar::{Command, Pointer, PointerAction};
-use lahar_app::hand::Grip;
+use lahar_app::pointer::PointerMode;
 
 fn press(harness: &Harness<'_, AppState>, pos: egui::Pos2, button: PointerButton, pressed: bool) {
     harness.event(egui::Event::PointerButton {
@@ -20,7 +20,7 @@ fn held(harness: &mut Harness<'_, AppState>, at: egui::Pos2, button: PointerButt
     press(harness, at, button, true);
     harness.run();
     let orders_now = orders(harness);
-    let Some(Order::Tell(Command::Pointer(Some(pointer)))) = orders_now.last() else {
+    let Some(Order::Command(Command::Pointer(Some(pointer)))) = orders_now.last() else {
         panic!("{orders_now:?}");
     };
     *pointer
@@ -47,7 +47,7 @@ fn the_left_button_attracts_and_the_right_repels_until_released() {
         let orders_now = orders(&mut harness);
         assert_eq!(
             orders_now.last(),
-            Some(&Order::Tell(Command::Pointer(None)))
+            Some(&Order::Command(Command::Pointer(None)))
         );
     }
 }
@@ -91,7 +91,7 @@ fn in_3d_a_drag_orbits_and_the_hand_takes_hold_of_the_nearest_water() {
     let camera = state.camera.clone().unwrap();
     let middle = [0.5, 0.5, 0.5];
     let at = camera.project(middle, state.aspect).unwrap();
-    state.hold(0, at, Grip::Attract, [0.0; 2]);
+    state.hold(0, at, PointerMode::Attract, [0.0; 2]);
     let (position, _) = state.held.unwrap();
     let nearer: f64 = (0..3)
         .map(|i| (position[i] - middle[i]) * camera.axes()[2][i])

@@ -14,8 +14,11 @@ fn buttons_do_what_their_keys_do() {
         ("Pause", Order::Pause(true)),
         ("Substep", Order::Substep),
         ("Go on", Order::Pause(false)),
-        ("None", Order::Tell(Command::Gravity([0.0; 3]))),
-        ("Scene's", Order::Tell(Command::Gravity([0.0, -9.81, 0.0]))),
+        ("None", Order::Command(Command::Gravity([0.0; 3]))),
+        (
+            "Scene's",
+            Order::Command(Command::Gravity([0.0, -9.81, 0.0])),
+        ),
     ] {
         harness.get_by_label(label).click();
         harness.run();
@@ -38,7 +41,7 @@ fn settings_are_applied_with_a_restart_and_forgotten_with_another_scene() {
     let change = vec![("materials.water.viscosity".to_owned(), "0.25".to_owned())];
     assert_eq!(
         orders(&mut harness),
-        [Order::Open(Wanted {
+        [Order::Open(SceneRequest {
             scene: "dam-break".into(),
             changes: change,
             comparison: None
@@ -100,6 +103,6 @@ fn tab_reaches_every_widget_of_the_panel() {
         });
     }
     assert_eq!(missing, [""; 0]);
-    // And sliders with their numbers, colours, choices.
+    // And sliders with their numbers, colors, choices.
     assert!(reached.len() >= 30, "{}", reached.len());
 }

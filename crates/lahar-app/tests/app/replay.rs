@@ -4,7 +4,7 @@ use super::*;
 use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 use lahar::{Data, Field, Snapshot};
-use lahar_app::shelf::Shelf;
+use lahar_app::scene_library::SceneLibrary;
 use lahar_app::solver::Condition;
 use lahar_io::export::Format;
 use lahar_io::output::{PhaseSeconds, Record, Status, frame_name, write_frame};
@@ -66,7 +66,7 @@ fn record(folder: &std::path::Path, frames: u64) {
 }
 
 fn solver(folder: &std::path::Path, paused: bool) -> Solver {
-    let solver = Solver::start(Arc::new(Shelf::default()), 1).unwrap();
+    let solver = Solver::start(Arc::new(SceneLibrary::default()), 1).unwrap();
     solver.order(Order::Pause(paused));
     solver.order(open(&folder.display().to_string()));
     solver
@@ -87,10 +87,10 @@ fn a_run_plays_at_its_own_pace_to_its_end_and_again_from_its_start() {
     // Three frames of a tenth of a second.
     assert!(start.elapsed().as_secs_f64() > 0.29);
     assert_eq!((first(&shown).frame, position(&shown)), (3, 0.8));
-    let facts = shown.facts.unwrap();
-    assert_eq!((facts.card.title.as_str(), facts.frames), ("Drop", Some(4)));
-    assert_eq!(facts.domain, Some(([0.0; 3], [2.0, 1.0, 0.0])));
-    let names: Vec<_> = facts
+    let info = shown.info.unwrap();
+    assert_eq!((info.card.title.as_str(), info.frames), ("Drop", Some(4)));
+    assert_eq!(info.domain, Some(([0.0; 3], [2.0, 1.0, 0.0])));
+    let names: Vec<_> = info
         .swatches
         .iter()
         .map(|swatch| swatch.name.as_str())

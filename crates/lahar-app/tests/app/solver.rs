@@ -2,24 +2,24 @@
 
 use super::*;
 use lahar::Field;
-use lahar_app::scenes::{Footage, Setting};
-use lahar_app::shelf::Shelf;
+use lahar_app::scene_library::SceneLibrary;
+use lahar_app::scenes::{SceneContent, Setting};
 use lahar_app::solver::Condition;
 use lahar_io::driver::Driver;
 
 /// A scene, to be run without a window.
 fn driver(source: &dyn SceneSource, scene: &str) -> Driver {
-    match source.open(scene, &vec![]).unwrap().footage {
-        Footage::Simulation(driver) => *driver,
-        Footage::Recording(_) => panic!("{scene} is a recording"),
+    match source.open(scene, &vec![]).unwrap().content {
+        SceneContent::Simulation(driver) => *driver,
+        SceneContent::Recording(_) => panic!("{scene} is a recording"),
     }
 }
 
 #[test]
 fn a_scene_left_alone_has_the_same_bits_as_a_headless_run() {
-    let mut driver = driver(&support::Blocks, "dam-break");
+    let mut driver = driver(&support::TestScenes, "dam-break");
     let headless = driver.simulation_mut();
-    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
+    let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Fields(vec![Field::Velocity]));
     solver.order(Order::Speed(8.0));
     solver.order(open("dam-break"));
@@ -49,7 +49,7 @@ fn a_scene_left_alone_has_the_same_bits_as_a_headless_run() {
 
 #[test]
 fn pause_stops_the_clock_and_a_substep_is_one_substep() {
-    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
+    let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Pause(true));
     solver.order(open("dam-break"));
     let start = wait(&mut solver, |shown| shown.condition == Condition::Paused);
@@ -68,7 +68,7 @@ fn pause_stops_the_clock_and_a_substep_is_one_substep() {
 
 #[test]
 fn never_faster_than_real_time_times_speed() {
-    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
+    let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Speed(0.1));
     solver.order(open("dam-break"));
     wait(&mut solver, |shown| shown.condition == Condition::Running);
@@ -85,12 +85,12 @@ fn never_faster_than_real_time_times_speed() {
 
 #[test]
 fn a_scene_that_cannot_be_opened_is_said_and_the_next_one_opens() {
-    let mut solver = Solver::start(Arc::new(support::Blocks), 1).unwrap();
+    let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(open("broken"));
     let shown = wait(&mut solver, |shown| {
         matches!(shown.condition, Condition::Failed(_))
     });
-    let mut state = AppState::new(support::Blocks.list(), DEFAULT_SCENE, None);
+    let mut state = AppState::new(support::TestScenes.list(), DEFAULT_SCENE, None);
     state.receive(shown);
     assert_eq!(state.failure(), Some("line 3: gravity: expected numbers"));
     solver.order(open("dam-break"));
@@ -98,16 +98,16 @@ fn a_scene_that_cannot_be_opened_is_said_and_the_next_one_opens() {
 }
 
 #[test]
-fn scenes_that_ship_open_with_a_colour_for_every_body() {
-    let shelf = Shelf::default();
-    let list = shelf.list();
+fn scenes_that_ship_open_with_a_color_for_every_body() {
+    let library = SceneLibrary::default();
+    let list = library.list();
     assert_eq!(list[0].name, DEFAULT_SCENE);
     for card in list {
         // Small: what is tested is the window's side of it.
-        let stage = shelf
+        let stage = library
             .open(&card.name, &vec![])
             .unwrap_or_else(|why| panic!("{why}"));
-        let stage = stage.facts;
+        let stage = stage.info;
         assert_eq!(stage.dimension, card.dimension);
         assert!(!stage.swatches.is_empty());
         let has = |key: &str| stage.settings.iter().any(|setting| setting.key == key);
@@ -127,7 +127,7 @@ fn scenes_that_ship_open_with_a_colour_for_every_body() {
         let all: Vec<_> = (stage.settings.iter())
             .map(|setting| (setting.key.clone(), setting.value.to_toml()))
             .collect();
-        shelf
+        library
             .open(&card.name, &all)
             .unwrap_or_else(|why| panic!("{why}"));
         assert!(
@@ -137,5 +137,5 @@ fn scenes_that_ship_open_with_a_colour_for_every_body() {
                 .all(|&i| i < stage.swatches.len())
         );
     }
-    assert!(shelf.open("no-such-scene", &vec![]).is_err());
+    assert!(library.open("no-such-scene", &vec![]).is_err());
 }

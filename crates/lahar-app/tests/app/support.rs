@@ -6,16 +6,16 @@ use lahar::{
     Transfer, WallStyle,
 };
 use lahar_app::scenes::{
-    Angle, Changes, Facts, Footage, Look, SceneCard, SceneSource, Setting, SettingValue, Stage,
-    Swatch,
+    Angle, Changes, MaterialKind, OpenedScene, SceneCard, SceneContent, SceneInfo, SceneSource,
+    Setting, SettingValue, Swatch,
 };
 use lahar_io::driver::{Driver, FrameEnd, Schedule};
 use lahar_io::scene::Controls;
 
 /// Two blocks of water in 2D, one in 3D, and a scene that cannot be opened.
-pub(crate) struct Blocks;
+pub(crate) struct TestScenes;
 
-impl SceneSource for Blocks {
+impl SceneSource for TestScenes {
     fn list(&self) -> Vec<SceneCard> {
         [
             ("dam-break", "Dam break", 2),
@@ -34,7 +34,7 @@ impl SceneSource for Blocks {
         .to_vec()
     }
 
-    fn open(&self, name: &str, changes: &Changes) -> Result<Stage, String> {
+    fn open(&self, name: &str, changes: &Changes) -> Result<OpenedScene, String> {
         let card = self.list().into_iter().find(|card| card.name == name);
         let card = card.ok_or_else(|| format!("no scene \"{name}\""))?;
         let mut water = Water::default();
@@ -53,7 +53,7 @@ impl SceneSource for Blocks {
             name: key.rsplit('.').next().unwrap_or(key).into(),
             value,
         };
-        let facts = Facts {
+        let info = SceneInfo {
             dimension: simulation.dimension(),
             dx: simulation.dx(),
             domain: simulation.domain(),
@@ -63,8 +63,8 @@ impl SceneSource for Blocks {
             frames: None,
             swatches: vec![Swatch {
                 name: "water".into(),
-                look: Look::Liquid,
-                colour: None,
+                look: MaterialKind::Liquid,
+                color: None,
             }],
             body_swatches: vec![0],
             bodies: vec![("block".into(), [0x06, 0x85, 0x87])],
@@ -105,9 +105,9 @@ impl SceneSource for Blocks {
             warnings: vec![],
             card,
         };
-        Ok(Stage {
-            facts,
-            footage: Footage::Simulation(Box::new(Driver::new(
+        Ok(OpenedScene {
+            info,
+            content: SceneContent::Simulation(Box::new(Driver::new(
                 simulation,
                 Schedule::new(FrameEnd::Rate(60.0)),
             ))),

@@ -10,10 +10,10 @@ use crate::solver::Order;
 
 /// The hand's reach and strength.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hand {
+pub struct PointerTool {
     /// How far it reaches \[m\]; infinite: everywhere.
     pub reach: f64,
-    /// Acceleration towards it or away from it \[m/s²\].
+    /// Acceleration toward it or away from it \[m/s²\].
     pub pull: f64,
     /// Within which that goes to zero \[m\].
     pub softening: f64,
@@ -26,7 +26,7 @@ const REACH: f64 = 0.25;
 /// Pull, in parts of gravity, where the scene does not say: mpm128 pulls with 100 where gravity is 30.
 const PULL: f64 = 100.0 / 30.0;
 
-impl Hand {
+impl PointerTool {
     /// As the scene wants it, where `gravity` \[m/s²\] is usual, the smallest extent is `smallest` \[m\] and
     /// nodes are `dx` \[m\] apart.
     pub(crate) fn of(controls: Controls, gravity: f64, smallest: f64, dx: f64) -> Self {
@@ -39,15 +39,15 @@ impl Hand {
     }
 
     /// What the left button does, and the right.
-    pub fn buttons(&self) -> [Grip; 2] {
+    pub fn buttons(&self) -> [PointerMode; 2] {
         if self.push.is_some() {
-            [Grip::Repel, Grip::Attract]
+            [PointerMode::Repel, PointerMode::Attract]
         } else {
-            [Grip::Attract, Grip::Repel]
+            [PointerMode::Attract, PointerMode::Repel]
         }
     }
 
-    /// With `pull` towards it \[m/s²\], negative: away from it.
+    /// With `pull` toward it \[m/s²\], negative: away from it.
     fn action(&self, pull: f64) -> PointerAction {
         match self.push {
             Some(power) => PointerAction::Push {
@@ -61,8 +61,8 @@ impl Hand {
 
 /// What a pressed button means in the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Grip {
-    /// Towards the hand.
+pub enum PointerMode {
+    /// Toward the hand.
     Attract,
     /// Away from it.
     Repel,
@@ -72,7 +72,7 @@ pub enum Grip {
 
 impl AppState {
     /// The hand at `at` (−1..1 of the drawing of `side`) doing `grip`, moving with `velocity` \[1/s, of −1..1\].
-    pub fn hold(&mut self, side: usize, at: [f64; 2], grip: Grip, velocity: [f64; 2]) {
+    pub fn hold(&mut self, side: usize, at: [f64; 2], grip: PointerMode, velocity: [f64; 2]) {
         let Some(camera) = &self.camera else { return };
         let through = match self.held {
             Some((position, _)) => position,
@@ -81,9 +81,9 @@ impl AppState {
         let position = camera.unproject(at, self.aspect, through);
         let pull = self.hand.pull;
         let action = match grip {
-            Grip::Attract => self.hand.action(pull),
-            Grip::Repel => self.hand.action(-pull),
-            Grip::Drag => {
+            PointerMode::Attract => self.hand.action(pull),
+            PointerMode::Repel => self.hand.action(-pull),
+            PointerMode::Drag => {
                 let ahead = [at[0] + velocity[0], at[1] + velocity[1]];
                 let there = camera.unproject(ahead, self.aspect, through);
                 PointerAction::Drag(sub(there, position))
@@ -96,13 +96,13 @@ impl AppState {
             softening: self.hand.softening,
             action,
         };
-        self.order(Order::Tell(Command::Pointer(Some(pointer))));
+        self.order(Order::Command(Command::Pointer(Some(pointer))));
     }
 
     /// The hand is lifted.
     pub fn release(&mut self) {
         if self.held.take().is_some() {
-            self.order(Order::Tell(Command::Pointer(None)));
+            self.order(Order::Command(Command::Pointer(None)));
         }
     }
 

@@ -13,22 +13,22 @@ use lahar_io::output::Recording;
 use lahar_io::scene::{Controls, Scene, colliders_of};
 use serde_json::Value;
 
-use crate::colour::{ColourBy, palette};
+use crate::color::{ColorBy, palette};
 use crate::scenes::{
-    Angle, Changes, Facts, Footage, Look, SceneCard, SceneSource, Setting, SettingValue, Stage,
-    Swatch,
+    Angle, Changes, MaterialKind, OpenedScene, SceneCard, SceneContent, SceneInfo, SceneSource,
+    Setting, SettingValue, Swatch,
 };
 
 /// The scenes that ship with lahar, and scene files.
 #[derive(Clone, Debug)]
-pub struct Shelf {
+pub struct SceneLibrary {
     /// The instruction set to run on.
     pub isa: Isa,
     /// Laid over every scene.
     pub overrides: Changes,
 }
 
-impl Default for Shelf {
+impl Default for SceneLibrary {
     /// The widest instruction set of this machine, scenes as they are.
     fn default() -> Self {
         Self {
@@ -38,7 +38,7 @@ impl Default for Shelf {
     }
 }
 
-impl SceneSource for Shelf {
+impl SceneSource for SceneLibrary {
     fn list(&self) -> Vec<SceneCard> {
         builtin::list()
             .iter()
@@ -51,7 +51,7 @@ impl SceneSource for Shelf {
             .collect()
     }
 
-    fn open(&self, name_or_path: &str, changes: &Changes) -> Result<Stage, String> {
+    fn open(&self, name_or_path: &str, changes: &Changes) -> Result<OpenedScene, String> {
         let path = Path::new(name_or_path);
         if builtin::find(name_or_path).is_none() && (path.is_dir() || path.ends_with("run.json")) {
             return replay(path);
@@ -62,7 +62,7 @@ impl SceneSource for Shelf {
         let simulation = built.simulation;
         let resolved = scene.resolved();
         let (swatches, body_swatches) = swatches(&resolved);
-        let facts = Facts {
+        let info = SceneInfo {
             card: SceneCard {
                 name: name_or_path.to_owned(),
                 title: title(&resolved, &scene.name),
@@ -87,24 +87,24 @@ impl SceneSource for Shelf {
             numbers: format!("{}, {}", simulation.precision(), simulation.isa().name()),
             warnings: built.warnings,
         };
-        Ok(Stage {
-            facts,
-            footage: Footage::Simulation(Box::new(Driver::of_scene(&scene, simulation))),
+        Ok(OpenedScene {
+            info,
+            content: SceneContent::Simulation(Box::new(Driver::of_scene(&scene, simulation))),
         })
     }
 
     fn thumbnail(&self, name: &str, [width, height]: [u32; 2]) -> Option<Picture> {
-        let Stage { facts, footage } = self.open(name, &vec![]).ok()?;
-        let Footage::Simulation(driver) = footage else {
+        let OpenedScene { info, content } = self.open(name, &vec![]).ok()?;
+        let SceneContent::Simulation(driver) = content else {
             return None;
         };
         let simulation = driver.simulation();
-        let mut scenery = Scenery::of(simulation, &[]).with_colliders(&facts.colliders);
-        scenery.colours = palette(&facts.swatches)
+        let mut scenery = Scenery::of(simulation, &[]).with_colliders(&info.colliders);
+        scenery.colours = palette(&info.swatches)
             .iter()
-            .map(|colour| [colour.r(), colour.g(), colour.b()])
+            .map(|color| [color.r(), color.g(), color.b()])
             .collect();
-        scenery.background = (facts.angle.background).unwrap_or(scenery.background);
+        scenery.background = (info.angle.background).unwrap_or(scenery.background);
         let style = Style {
             width,
             height,
@@ -122,22 +122,22 @@ impl SceneSource for Shelf {
 }
 
 /// A finished run, from its first frame.
-fn replay(folder: &Path) -> Result<Stage, String> {
+fn replay(folder: &Path) -> Result<OpenedScene, String> {
     let recording = Recording::open(folder).map_err(|error| error.to_string())?;
-    let facts = recorded(&recording, &recording.record().scene);
-    Ok(Stage {
-        facts,
-        footage: Footage::Recording(Box::new(recording)),
+    let info = recorded(&recording, &recording.record().scene);
+    Ok(OpenedScene {
+        info,
+        content: SceneContent::Recording(Box::new(recording)),
     })
 }
 
 /// What stays the same in a run, `scene` being its scene with its defaults filled in.
-pub(crate) fn recorded(recording: &Recording, scene: &Value) -> Facts {
+pub(crate) fn recorded(recording: &Recording, scene: &Value) -> SceneInfo {
     let record = recording.record();
     let folder = recording.folder();
     let (swatches, body_swatches) = swatches(scene);
     let corner = |end: &str| vector(&scene["domain"][end]);
-    Facts {
+    SceneInfo {
         card: SceneCard {
             name: folder.display().to_string(),
             title: title(scene, &record.scene_name),
@@ -185,7 +185,7 @@ fn vector(value: &Value) -> Option<[f64; 3]> {
     }
 }
 
-fn colour(value: &Value) -> Option<[u8; 3]> {
+fn color(value: &Value) -> Option<[u8; 3]> {
     let digits = value.as_str()?.strip_prefix('#')?;
     let [_, r, g, b] = u32::from_str_radix(digits, 16).ok()?.to_be_bytes();
     Some([r, g, b])
@@ -200,14 +200,14 @@ fn angle(scene: &Value) -> Angle {
         direction: vector(&camera["direction"]),
         field_of_view: camera["field_of_view"].as_f64(),
         particle_radius: camera["particle_radius"].as_f64(),
-        background: colour(&camera["background"]),
-        colour_by: match camera["color_by"].as_str() {
-            Some("body") => ColourBy::Body,
-            Some("speed") => ColourBy::Speed,
-            Some("pressure") => ColourBy::Pressure,
-            Some("density") => ColourBy::Density,
-            Some("J") => ColourBy::Jacobian,
-            _ => ColourBy::Material,
+        background: color(&camera["background"]),
+        color_by: match camera["color_by"].as_str() {
+            Some("body") => ColorBy::Body,
+            Some("speed") => ColorBy::Speed,
+            Some("pressure") => ColorBy::Pressure,
+            Some("density") => ColorBy::Density,
+            Some("J") => ColorBy::Jacobian,
+            _ => ColorBy::Material,
         },
     }
 }
@@ -264,7 +264,7 @@ fn bodies(scene: &Value) -> Vec<(String, [u8; 3])> {
     tables
         .enumerate()
         .map(|(number, table)| {
-            let own = colour(&table["color"]);
+            let own = color(&table["color"]);
             (
                 body_name(table, number),
                 own.unwrap_or_else(|| body_colour(number)),
@@ -277,36 +277,36 @@ fn body_name(table: &Value, number: usize) -> String {
     (table["name"].as_str()).map_or_else(|| format!("body-{number}"), str::to_owned)
 }
 
-/// The materials, then the bodies that have colours of their own; and which is whose.
+/// The materials, then the bodies that have colors of their own; and which is whose.
 fn swatches(scene: &Value) -> (Vec<Swatch>, Vec<usize>) {
     let empty = serde_json::Map::new();
     let materials = scene["materials"].as_object().unwrap_or(&empty);
     let look = |material: &str| match scene["materials"][material]["model"].as_str() {
-        Some("fluid") => Look::Liquid,
-        Some("corotated" | "neo_hookean") => Look::Jelly,
-        Some("snow") => Look::Snow,
-        Some("none") => Look::Dust,
-        _ => Look::Other,
+        Some("fluid") => MaterialKind::Liquid,
+        Some("corotated" | "neo_hookean") => MaterialKind::Jelly,
+        Some("snow") => MaterialKind::Snow,
+        Some("none") => MaterialKind::Dust,
+        _ => MaterialKind::Other,
     };
     let mut swatches: Vec<Swatch> = (materials.iter())
         .map(|(name, table)| Swatch {
             name: name.clone(),
             look: look(name),
-            colour: colour(&table["color"]),
+            color: color(&table["color"]),
         })
         .collect();
     let mut of_body = vec![];
     for (number, body) in (scene["bodies"].as_array().into_iter().flatten()).enumerate() {
         let material = body["material"].as_str().unwrap_or_default();
-        of_body.push(match colour(&body["color"]) {
+        of_body.push(match color(&body["color"]) {
             None => (materials.keys())
                 .position(|name| name == material)
                 .unwrap_or(0),
-            Some(colour) => {
+            Some(color) => {
                 swatches.push(Swatch {
                     name: body_name(body, number),
                     look: look(material),
-                    colour: Some(colour),
+                    color: Some(color),
                 });
                 swatches.len() - 1
             }

@@ -1,10 +1,10 @@
-//! What particles are coloured by: the numbers, their range, and the colours.
+//! What particles are colored by: the numbers, their range, and the colors.
 
 use eframe::egui::Color32;
 use lahar::{Field, Snapshot};
 use lahar_io::image::{Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, body_colour};
 
-use crate::scenes::{Facts, Look, Swatch};
+use crate::scenes::{MaterialKind, SceneInfo, Swatch};
 
 /// Behind everything (Taichi's examples: 0x112F41).
 pub const BACKGROUND: Color32 = Color32::from_rgb(0x11, 0x2f, 0x41);
@@ -15,9 +15,9 @@ pub const JELLY: Color32 = Color32::from_rgb(0xed, 0x55, 0x3b);
 /// Snow (Taichi's examples: 0xEEEEF0).
 pub const SNOW: Color32 = Color32::from_rgb(0xee, 0xee, 0xf0);
 
-/// What particles are coloured by.
+/// What particles are colored by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColourBy {
+pub enum ColorBy {
     /// What they are made of.
     #[default]
     Material,
@@ -33,7 +33,7 @@ pub enum ColourBy {
     Jacobian,
 }
 
-impl ColourBy {
+impl ColorBy {
     /// All, in the order of the key C.
     pub const ALL: [Self; 6] = [
         Self::Material,
@@ -84,7 +84,7 @@ impl ColourBy {
         }
     }
 
-    /// One number a particle; `None` where colours are not of numbers, and while the snapshot has not
+    /// One number a particle; `None` where colors are not of numbers, and while the snapshot has not
     /// got the fields.
     pub fn values(self, snapshot: &Snapshot) -> Option<Vec<f32>> {
         let get = |field| snapshot.get(field).map(lahar::Data::to_f32);
@@ -110,7 +110,7 @@ impl ColourBy {
         }
     }
 
-    /// The colours of its range, low to high, evenly spaced.
+    /// The colors of its range, low to high, evenly spaced.
     pub fn ramp(self) -> &'static [Colour] {
         match self {
             Self::Material | Self::Body => &[],
@@ -120,7 +120,7 @@ impl ColourBy {
         }
     }
 
-    /// The colour at `at` in 0..=1 of that range.
+    /// The color at `at` in 0..=1 of that range.
     pub fn along(self, at: f32) -> Color32 {
         let [r, g, b] = along(self.ramp(), at);
         Color32::from_rgb(r, g, b)
@@ -148,22 +148,22 @@ impl ColourBy {
 /// Particles looked at to find a range.
 const SAMPLE: usize = 4096;
 
-fn around(centre: f32, low: f32, high: f32) -> (f32, f32) {
-    let reach = (centre - low).max(high - centre).max(centre.abs() * 1e-3);
-    (centre - reach, centre + reach)
+fn around(center: f32, low: f32, high: f32) -> (f32, f32) {
+    let reach = (center - low).max(high - center).max(center.abs() * 1e-3);
+    (center - reach, center + reach)
 }
 
 /// Low and high end of a legend; follows the numbers without flicker.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Range {
     /// What this is the range of.
-    by: ColourBy,
+    by: ColorBy,
     ends: Option<(f32, f32)>,
 }
 
 impl Range {
     /// The range of `by` from the first of `ends` to the second.
-    pub fn of(by: ColourBy, ends: (f32, f32)) -> Self {
+    pub fn of(by: ColorBy, ends: (f32, f32)) -> Self {
         Self {
             by,
             ends: Some(ends),
@@ -176,7 +176,7 @@ impl Range {
     }
 
     /// Takes in new numbers, those of all sides: widens at once, narrows slowly.
-    pub fn follow(&mut self, by: ColourBy, sides: impl IntoIterator<Item = Vec<f32>>) {
+    pub fn follow(&mut self, by: ColorBy, sides: impl IntoIterator<Item = Vec<f32>>) {
         const NARROW: f32 = 0.03;
         if self.by != by {
             *self = Self { by, ends: None };
@@ -208,11 +208,11 @@ impl Range {
 }
 
 /// What is behind a scene at first.
-pub(crate) fn background(facts: &Facts) -> Color32 {
-    (facts.angle.background).map_or(BACKGROUND, |[r, g, b]| Color32::from_rgb(r, g, b))
+pub(crate) fn background(info: &SceneInfo) -> Color32 {
+    (info.angle.background).map_or(BACKGROUND, |[r, g, b]| Color32::from_rgb(r, g, b))
 }
 
-/// Colours of the swatches at first; the person at the window may change them.
+/// Colors of the swatches at first; the person at the window may change them.
 pub fn palette(swatches: &[Swatch]) -> Vec<Color32> {
     /// For the second of a look, and for what has none.
     const OTHERS: [Color32; 6] = [
@@ -223,21 +223,21 @@ pub fn palette(swatches: &[Swatch]) -> Vec<Color32> {
         Color32::from_rgb(0x5b, 0xa4, 0xe6),
         Color32::from_rgb(0xb0, 0x8d, 0x6e),
     ];
-    let mut used: Vec<Look> = vec![];
+    let mut used: Vec<MaterialKind> = vec![];
     let mut others = OTHERS.iter().cycle().copied();
     swatches
         .iter()
         .map(|swatch| {
-            if let Some([r, g, b]) = swatch.colour {
+            if let Some([r, g, b]) = swatch.color {
                 return Color32::from_rgb(r, g, b);
             }
             let first = !used.contains(&swatch.look);
             used.push(swatch.look);
             let own = match swatch.look {
-                Look::Liquid => Some(LIQUID),
-                Look::Jelly => Some(JELLY),
-                Look::Snow => Some(SNOW),
-                Look::Dust | Look::Other => None,
+                MaterialKind::Liquid => Some(LIQUID),
+                MaterialKind::Jelly => Some(JELLY),
+                MaterialKind::Snow => Some(SNOW),
+                MaterialKind::Dust | MaterialKind::Other => None,
             };
             own.filter(|_| first)
                 .or_else(|| others.next())
@@ -246,11 +246,11 @@ pub fn palette(swatches: &[Swatch]) -> Vec<Color32> {
         .collect()
 }
 
-/// One colour a particle.
-pub fn colours(
-    by: ColourBy,
+/// One color a particle.
+pub fn colors(
+    by: ColorBy,
     snapshot: &Snapshot,
-    facts: &Facts,
+    info: &SceneInfo,
     palette: &[Color32],
     range: &Range,
 ) -> Vec<[u8; 4]> {
@@ -274,10 +274,10 @@ pub fn colours(
             .collect();
     }
     let bodies = snapshot.get(Field::Body);
-    if by == ColourBy::Body {
+    if by == ColorBy::Body {
         let opaque = |[r, g, b]: Colour| [r, g, b, 255];
-        let of_body = |body: usize| match facts.bodies.get(body) {
-            Some((_, colour)) => opaque(*colour),
+        let of_body = |body: usize| match info.bodies.get(body) {
+            Some((_, color)) => opaque(*color),
             None => opaque(body_colour(body)),
         };
         return match bodies {
@@ -286,7 +286,7 @@ pub fn colours(
         };
     }
     let first = palette.first().copied().unwrap_or(LIQUID).to_array();
-    let of_body: Vec<[u8; 4]> = facts
+    let of_body: Vec<[u8; 4]> = info
         .body_swatches
         .iter()
         .map(|&swatch| palette.get(swatch).map_or(first, Color32::to_array))
@@ -306,34 +306,42 @@ mod tests {
 
     #[test]
     fn c_goes_round_all_of_them() {
-        let mut by = ColourBy::Material;
-        for _ in ColourBy::ALL {
+        let mut by = ColorBy::Material;
+        for _ in ColorBy::ALL {
             by = by.next();
         }
-        assert_eq!(by, ColourBy::Material);
+        assert_eq!(by, ColorBy::Material);
     }
 
     #[test]
     fn a_range_widens_at_once_and_narrows_slowly() {
         let mut range = Range::default();
-        range.follow(ColourBy::Speed, [vec![0.0, 1.0]]);
+        range.follow(ColorBy::Speed, [vec![0.0, 1.0]]);
         assert_eq!(range.ends(), (0.0, 1.0));
-        range.follow(ColourBy::Speed, [vec![0.0, 1.0], vec![5.0]]);
+        range.follow(ColorBy::Speed, [vec![0.0, 1.0], vec![5.0]]);
         assert_eq!(range.ends(), (0.0, 5.0));
-        range.follow(ColourBy::Speed, [vec![0.0, 1.0]]);
+        range.follow(ColorBy::Speed, [vec![0.0, 1.0]]);
         assert!(range.ends().1 > 4.0 && range.ends().1 < 5.0);
-        range.follow(ColourBy::Jacobian, [vec![0.9, 1.05]]);
+        range.follow(ColorBy::Jacobian, [vec![0.9, 1.05]]);
         assert!((range.ends().0 - 0.9).abs() < 1e-6 && (range.ends().1 - 1.1).abs() < 1e-6);
     }
 
     #[test]
-    fn the_lineage_colours_are_theirs_and_a_second_liquid_has_its_own() {
+    fn the_lineage_colors_are_theirs_and_a_second_liquid_has_its_own() {
         let swatch = |look| Swatch {
             name: String::new(),
             look,
-            colour: None,
+            color: None,
         };
-        let palette = palette(&[Look::Liquid, Look::Jelly, Look::Snow, Look::Liquid].map(swatch));
+        let palette = palette(
+            &[
+                MaterialKind::Liquid,
+                MaterialKind::Jelly,
+                MaterialKind::Snow,
+                MaterialKind::Liquid,
+            ]
+            .map(swatch),
+        );
         assert_eq!(palette[..3], [LIQUID, JELLY, SNOW]);
         assert!(!palette[..3].contains(&palette[3]));
     }
