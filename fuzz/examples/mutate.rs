@@ -77,15 +77,15 @@ fn main() {
         .map(|path| std::fs::read(path).expect("a file"))
         .collect();
     let read: fn(&[u8]) = match target.as_str() {
-        "scene" => lahar_io::fuzzing::scene,
-        "expression" => lahar_io::fuzzing::expression,
-        "csv" => lahar_io::fuzzing::csv,
-        "ply" => lahar_io::fuzzing::ply,
-        "npz" => lahar_io::fuzzing::npz,
+        "scene" => lahar_scene::fuzzing::scene,
+        "expression" => lahar_scene::fuzzing::expression,
+        "csv" => lahar_scene::fuzzing::csv,
+        "ply" => lahar_scene::fuzzing::ply,
+        "npz" => lahar_scene::fuzzing::npz,
         "checkpoint" => lahar_io::fuzzing::checkpoint,
         "state" => lahar_io::fuzzing::state,
-        "mesh_stl" => |bytes| lahar_io::fuzzing::mesh(bytes, "stl"),
-        "mesh_obj" => |bytes| lahar_io::fuzzing::mesh(bytes, "obj"),
+        "mesh_stl" => |bytes| lahar_scene::fuzzing::mesh(bytes, "stl"),
+        "mesh_obj" => |bytes| lahar_scene::fuzzing::mesh(bytes, "obj"),
         _ => panic!("there is no target {target}"),
     };
     let (mut random, mut slowest) = (Random(1), Duration::ZERO);

@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| lahar_io::fuzzing::expression(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| lahar_scene::fuzzing::expression(bytes));

@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| lahar_io::fuzzing::mesh(bytes, "obj"));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| lahar_scene::fuzzing::mesh(bytes, "obj"));

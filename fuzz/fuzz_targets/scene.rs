@@ -1,3 +1,3 @@
 #![no_main]
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| lahar_io::fuzzing::scene(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| lahar_scene::fuzzing::scene(bytes));

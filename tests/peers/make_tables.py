@@ -1,4 +1,4 @@
-"""Writes crates/lahar-io/tests/io/lineage.csv: what the programs make of our scenes' own particles, for tests that run
+"""Writes crates/lahar-scene/tests/scene/lineage.csv: what the programs make of our scenes' own particles, for tests that run
 without them. Taichi's programs run in double precision; the others by their published steps."""
 
 import argparse
@@ -10,7 +10,7 @@ import lahar
 import published_steps
 from taichi_programs import PROGRAMS, Program
 
-TABLE = pathlib.Path(__file__).resolve().parents[2] / "crates/lahar-io/tests/io/lineage.csv"
+TABLE = pathlib.Path(__file__).resolve().parents[2] / "crates/lahar-scene/tests/scene/lineage.csv"
 
 # Scene: substeps to look at.
 STEPS = {

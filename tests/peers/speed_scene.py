@@ -11,7 +11,7 @@ PAD = 3
 class Scene:
     """A column of fluid that collapses in a box, in `dim` dimensions with `cells` cells a metre.
 
-    The scenes of crates/lahar-io/scenes/bench: the box is 1 m a side (2 m by 1 m in 2D), the column fills the half of
+    The scenes of crates/lahar-scene/scenes/bench: the box is 1 m a side (2 m by 1 m in 2D), the column fills the half of
     each side (not of the depth in 3D); linear J-based pressure, quadratic kernel, APIC, f32.
     """
 

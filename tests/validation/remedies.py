@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-SCENES = pathlib.Path(__file__).parents[2] / "crates/lahar-io/scenes/validation"
+SCENES = pathlib.Path(__file__).parents[2] / "crates/lahar-scene/scenes/validation"
 
 CASES = {
     "F4": "f4-tank",

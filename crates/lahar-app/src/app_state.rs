@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Color32};
 use lahar::Command;
-use lahar_io::scene::{Comparison, Controls};
+use lahar_scene::scene::{Comparison, Controls};
 
 use crate::camera::{Camera, V3, length, scale};
 use crate::color::{self, ColorBy, Range};

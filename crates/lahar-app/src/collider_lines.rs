@@ -2,7 +2,7 @@
 
 use lahar::Solid;
 use lahar_io::image::COLLIDER;
-use lahar_io::scene::ColliderInfo;
+use lahar_scene::scene::ColliderInfo;
 
 use crate::camera::{V3, add, scale, sub};
 use crate::renderer::Line;

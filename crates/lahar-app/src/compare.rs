@@ -1,6 +1,6 @@
 //! What the panel would compare: a setting of the scene, and the values to run it with.
 
-use lahar_io::scene::Comparison;
+use lahar_scene::scene::Comparison;
 
 use crate::scenes::{Setting, SettingValue};
 

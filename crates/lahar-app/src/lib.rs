@@ -46,7 +46,7 @@ use eframe::egui_wgpu::{WgpuSetup, WgpuSetupCreateNew, wgpu};
 use app_state::AppState;
 pub use controls::key_help;
 use lahar::Isa;
-use lahar_io::scene::Comparison;
+use lahar_scene::scene::Comparison;
 use meter::Meter;
 pub use painter::{PaintError, Painter};
 use scene_library::SceneLibrary;

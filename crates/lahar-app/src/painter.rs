@@ -45,7 +45,7 @@ pub struct Painter {
 
 impl Painter {
     /// Chooses the view for a run. `scene` is its scene with all defaults filled in
-    /// ([`lahar_io::scene::Scene::resolved`]), `first` a frame of it, the earlier the better. Pictures have exactly the
+    /// ([`lahar_scene::scene::Scene::resolved`]), `first` a frame of it, the earlier the better. Pictures have exactly the
     /// size of `style`.
     ///
     /// # Errors

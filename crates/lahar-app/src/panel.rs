@@ -7,7 +7,7 @@ use crate::color::ColorBy;
 use crate::controls::{Action, Direction};
 use crate::scenes::{Setting, SettingValue};
 use crate::solver::Condition;
-use lahar_io::scene::Comparison;
+use lahar_scene::scene::Comparison;
 
 /// The whole panel.
 pub fn panel(state: &mut AppState, ui: &mut Ui) {

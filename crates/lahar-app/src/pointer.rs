@@ -2,7 +2,7 @@
 
 use eframe::egui;
 use lahar::{Command, Pointer, PointerAction};
-use lahar_io::scene::Controls;
+use lahar_scene::scene::Controls;
 
 use crate::app_state::AppState;
 use crate::camera::{V3, add, dot, sub};

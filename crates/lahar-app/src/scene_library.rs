@@ -6,11 +6,11 @@
 use std::path::Path;
 
 use lahar::{Field, Isa};
-use lahar_io::builtin;
 use lahar_io::driver::Driver;
 use lahar_io::image::{Picture, Renderer, Scenery, Style, body_colour};
 use lahar_io::output::Recording;
-use lahar_io::scene::{Controls, Scene, colliders_of};
+use lahar_scene::builtin;
+use lahar_scene::scene::{Controls, Scene, colliders_of};
 use serde_json::Value;
 
 use crate::color::{ColorBy, palette};

@@ -3,7 +3,7 @@
 use lahar_io::driver::Driver;
 use lahar_io::image::Picture;
 use lahar_io::output::Recording;
-use lahar_io::scene::{ColliderInfo, Controls};
+use lahar_scene::scene::{ColliderInfo, Controls};
 
 use crate::color::ColorBy;
 

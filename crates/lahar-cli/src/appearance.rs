@@ -1,7 +1,7 @@
 //! How a scene wants to be drawn: its camera and colours, for pictures made by the processor.
 
 use lahar_io::image::{Camera, Colouring, Renderer, Scenery, Style};
-use lahar_io::scene::Scene;
+use lahar_scene::scene::Scene;
 
 /// Width of a film \[pixels\]: a film of all frames is to stay a few megabytes.
 const FILM_WIDTH: u32 = 640;

@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::{Parser, Subcommand};
 use lahar::Isa;
-use lahar_io::scene::Comparison;
+use lahar_scene::scene::Comparison;
 
 use crate::recorded_frames::Frames;
 

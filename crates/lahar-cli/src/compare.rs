@@ -14,7 +14,7 @@ use std::process::ExitCode;
 
 use lahar_io::image::{Film, Picture, beside};
 use lahar_io::output::{RunFolder, film_pace};
-use lahar_io::scene::{Comparison, Scene};
+use lahar_scene::scene::{Comparison, Scene};
 
 use crate::error::CliError;
 use crate::plan::Plan;

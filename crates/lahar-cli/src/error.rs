@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use lahar_io::error::SceneError;
 use lahar_io::output::OutputError;
+use lahar_scene::error::SceneError;
 use serde_json::{Value, json};
 
 use crate::terminal;

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use lahar_io::builtin;
+use lahar_scene::builtin;
 use serde_json::{Value, json};
 
 use crate::error::CliError;

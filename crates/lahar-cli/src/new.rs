@@ -5,7 +5,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use lahar_io::builtin::{self, Builtin};
+use lahar_scene::builtin::{self, Builtin};
 
 use crate::error::CliError;
 use crate::{args, terminal};

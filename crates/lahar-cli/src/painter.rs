@@ -3,7 +3,7 @@
 use lahar::Snapshot;
 use lahar_io::image::{Picture, Renderer, Scenery};
 use lahar_io::output::Recording;
-use lahar_io::scene::Scene;
+use lahar_scene::scene::Scene;
 
 use crate::args;
 use crate::error::CliError;

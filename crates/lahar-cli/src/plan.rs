@@ -7,7 +7,7 @@ use lahar_io::checkpoint::Start;
 use lahar_io::export::{FORMATS, Format};
 use lahar_io::image::{self, Scenery};
 use lahar_io::output::{Film, Pictures, RunFolder, film_pace};
-use lahar_io::scene::Scene;
+use lahar_scene::scene::Scene;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 

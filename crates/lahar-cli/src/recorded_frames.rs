@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use lahar::Snapshot;
 use lahar_io::output::{Recording, RecordingError};
-use lahar_io::scene::Scene;
+use lahar_scene::scene::Scene;
 
 use crate::error::CliError;
 use crate::interrupt;

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use lahar_io::image::{self, Mp4, Mp4Maker, Picture};
 use lahar_io::output::{Recording, film_pace, frame_name};
-use lahar_io::scene::Scene;
+use lahar_scene::scene::Scene;
 
 use crate::error::{CliError, INTERRUPTED};
 use crate::painter::{Painter, Subject};

@@ -6,6 +6,6 @@ use crate::error::CliError;
 use crate::terminal;
 
 pub(crate) fn schema() -> Result<ExitCode, CliError> {
-    terminal::print_json(&lahar_io::scene::schema());
+    terminal::print_json(&lahar_scene::scene::schema());
     Ok(ExitCode::SUCCESS)
 }

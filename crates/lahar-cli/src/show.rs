@@ -3,8 +3,8 @@
 use std::process::ExitCode;
 
 use lahar::Isa;
-use lahar_io::builtin;
-use lahar_io::scene::Scene;
+use lahar_scene::builtin;
+use lahar_scene::scene::Scene;
 use serde_json::{Value, json};
 
 use crate::args;

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use lahar_io::builtin;
 use lahar_io::output::Recording;
-use lahar_io::scene::{Comparison, Scene};
+use lahar_scene::builtin;
+use lahar_scene::scene::{Comparison, Scene};
 
 use crate::args::View;
 use crate::error::CliError;

@@ -14,7 +14,7 @@
 //!
 //! ```
 //! use lahar_io::driver::{Driver, Event};
-//! use lahar_io::scene::Scene;
+//! use lahar_scene::scene::Scene;
 //!
 //! let scene = Scene::load("dam-break", &[("dx".into(), "0.1".into())])?;
 //! let built = scene.build(lahar::Isa::Portable)?;
@@ -33,7 +33,7 @@
 
 use lahar::{Advance, Checkpoint, Command, Failure, ProbeSamples, Retry, Simulate};
 
-use crate::scene::{Scene, SoundSpeeds};
+use lahar_scene::scene::{Scene, SoundSpeeds};
 
 /// Where a frame ends.
 #[derive(Clone, Copy, Debug, PartialEq)]

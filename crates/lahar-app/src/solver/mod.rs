@@ -18,7 +18,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, OnceLock};
 
 use lahar::{Command, DtLimit, Field, Snapshot};
-use lahar_io::scene::Comparison;
+use lahar_scene::scene::Comparison;
 use triple_buffer::{Output, TripleBuffer};
 
 use crate::scenes::{Changes, SceneInfo, SceneSource};

@@ -5,7 +5,7 @@ use eframe::egui::{Key, Rect, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 use lahar::Field;
 use lahar_app::solver::Condition;
-use lahar_io::scene::Comparison;
+use lahar_scene::scene::Comparison;
 
 fn transfers() -> Comparison {
     "transfer=apic,pic".parse().unwrap()

@@ -10,7 +10,7 @@ use lahar_app::scenes::{
     Setting, SettingValue, Swatch,
 };
 use lahar_io::driver::{Driver, FrameEnd, Schedule};
-use lahar_io::scene::Controls;
+use lahar_scene::scene::Controls;
 
 /// Two blocks of water in 2D, one in 3D, and a scene that cannot be opened.
 pub(crate) struct TestScenes;

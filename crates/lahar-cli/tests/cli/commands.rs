@@ -36,7 +36,7 @@ fn a_run_writes_what_was_asked_for() {
     assert_eq!(record["frames"], 4);
     assert_eq!(record["threads"], 1);
     assert!(record["particle_steps_per_second"].as_f64().unwrap() > 0.0);
-    let arrays = lahar_io::npz::read(folder.join("frames/000003.npz")).unwrap();
+    let arrays = lahar_scene::npz::read(folder.join("frames/000003.npz")).unwrap();
     let find = |name: &str| arrays.iter().find(|array| array.name == name).expect(name);
     let n = find("id").shape[0];
     assert_eq!(find("position").shape, [n, 2]);
@@ -210,7 +210,7 @@ fn broken_scenes_are_code_2() {
         std::fs::write(here.path().join(name), bytes).unwrap();
         name.to_owned()
     };
-    let good = String::from_utf8(lahar_io::builtin::starter().as_bytes().to_vec()).unwrap();
+    let good = String::from_utf8(lahar_scene::builtin::starter().as_bytes().to_vec()).unwrap();
     let with = |name: &str, from: &str, to: &str| {
         assert!(good.contains(from), "{from}");
         file(name, good.replacen(from, to, 1).as_bytes())
@@ -354,7 +354,7 @@ fn ctrl_c_ends_after_the_frame_with_130_and_whole_files() {
     let frames = names(&folder.join("frames"));
     assert_eq!(frames.len(), rows);
     for frame in frames {
-        lahar_io::npz::read(folder.join("frames").join(frame)).unwrap();
+        lahar_scene::npz::read(folder.join("frames").join(frame)).unwrap();
     }
 }
 

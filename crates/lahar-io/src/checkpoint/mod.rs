@@ -17,7 +17,7 @@ mod store;
 pub use format::{Header, read, write};
 pub(crate) use format::{LENGTH_AT, Sums, read_with};
 pub use lock::Lock;
-pub use start::{KeptFile, Start, Unusable};
+pub use start::{Start, Unusable};
 pub use store::{Newest, Store};
 
 use serde::{Deserialize, Serialize};

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::error::SceneError;
 use crate::output::{OutputError, sync_folder, write_whole};
-use crate::scene::{Limits, Scene};
+use lahar_scene::error::SceneError;
+use lahar_scene::scene::{KeptFile, Limits, Scene};
 
 /// What a run began with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -31,21 +31,6 @@ pub struct Start {
     pub outputs: serde_json::Value,
     /// What looked suspicious about the scene.
     pub warnings: Vec<String>,
-}
-
-/// The copy of a file that a scene names.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct KeptFile {
-    /// As the scene names it.
-    pub name: String,
-    /// Whether it was looked for where the command was given, not beside the scene.
-    pub here: bool,
-    /// The copy's name in `checkpoints/files/`.
-    pub copy: String,
-    /// Its length.
-    pub bytes: u64,
-    /// CRC-32 of its bytes.
-    pub crc32: u32,
 }
 
 const NAME: &str = "start.json";

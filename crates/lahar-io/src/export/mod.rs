@@ -22,7 +22,7 @@ use std::io::{self, Seek, Write};
 use lahar::particles::{FIELDS, Shape};
 use lahar::{Data, Field, Snapshot};
 
-use crate::npz::{Compression, NpzWriter};
+use lahar_scene::npz::{Compression, NpzWriter};
 
 pub use mesh::{MeshFormat, Triangles};
 pub(crate) use series::TimeSeries;

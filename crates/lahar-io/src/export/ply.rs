@@ -66,7 +66,7 @@ fn property(field: Field, k: usize, dimension: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ply::parse_ply;
+    use lahar_scene::ply::parse_ply;
 
     #[test]
     fn a_frame_is_a_particle_list() {

@@ -20,10 +20,10 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use crate::scene::{ColliderInfo, Scene};
 use drawn::Drawn;
 use lahar::boundary::Placed;
 use lahar::{Collider, Field, Simulate, Snapshot};
+use lahar_scene::scene::{ColliderInfo, Scene};
 
 pub use beside::beside;
 pub use camera::Camera;

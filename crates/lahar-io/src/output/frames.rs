@@ -40,7 +40,7 @@ mod tests {
             ],
         };
         write_frame(&path, &snapshot, Format::Npz).unwrap();
-        let arrays = crate::npz::read(&path).unwrap();
+        let arrays = lahar_scene::npz::read(&path).unwrap();
         let names: Vec<_> = arrays
             .iter()
             .map(|a| (a.name.as_str(), a.shape.as_slice()))

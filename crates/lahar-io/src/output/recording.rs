@@ -8,7 +8,7 @@ use lahar::particles::{FIELDS, Shape};
 use lahar::{Data, Field, Snapshot};
 
 use super::Record;
-use crate::npz;
+use lahar_scene::npz;
 
 /// A folder that a run left, with particles in it.
 #[derive(Clone, Debug)]

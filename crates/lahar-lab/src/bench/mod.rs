@@ -15,8 +15,8 @@ use lahar::{Isa, PhaseTimes};
 use lahar_io::driver::{Driver, Event, FrameEnd, Schedule};
 use serde::{Deserialize, Serialize};
 
-use lahar_io::error::SceneError;
-use lahar_io::scene::{Precision, Scene};
+use lahar_scene::error::SceneError;
+use lahar_scene::scene::{Precision, Scene};
 pub use machine::{Machine, seconds};
 pub use report::{Report, growth};
 

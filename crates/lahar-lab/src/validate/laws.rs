@@ -102,9 +102,7 @@ fn k5(session: &mut Session<'_>) -> Result<(), Stop> {
         session,
         include_str!("../../data/constitutive_reference_3d.csv"),
     );
-    let table = Table::parse(include_str!(
-        "../../data/eos_reference.csv"
-    ));
+    let table = Table::parse(include_str!("../../data/eos_reference.csv"));
     let columns = [
         ("linear", Eos::Tait { gamma: 1.0 }),
         ("linearJ", Eos::LinearJ),

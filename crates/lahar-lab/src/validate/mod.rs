@@ -20,8 +20,8 @@ mod waves;
 
 use lahar::Isa;
 
-use lahar_io::error::SceneError;
 use crate::plot::Plot;
+use lahar_scene::error::SceneError;
 pub use report::{document, json, text};
 use session::{Session, Stop};
 

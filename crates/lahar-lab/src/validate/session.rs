@@ -8,8 +8,8 @@ use lahar_io::driver::{Driver, Event};
 
 use super::{Case, Finding, Options, Outcome};
 use crate::plot::{Line, Plot};
-use lahar_io::error::SceneError;
-use lahar_io::scene::Scene;
+use lahar_scene::error::SceneError;
+use lahar_scene::scene::Scene;
 
 /// What ends a case early.
 pub(super) enum Stop {

@@ -1,8 +1,8 @@
 //! Every built-in scene can be read and built and agrees with its table; generated files are up to date.
 
 use lahar::Isa;
-use lahar_io::builtin;
-use lahar_io::scene::Scene;
+use lahar_scene::builtin;
+use lahar_scene::scene::Scene;
 use std::fmt::Write;
 use std::path::Path;
 

@@ -9,8 +9,8 @@ use std::path::Path;
 
 use lahar::particles::{Data, Field};
 use lahar::{Isa, Simulate};
-use lahar_io::builtin;
-use lahar_io::scene::Scene;
+use lahar_scene::builtin;
+use lahar_scene::scene::Scene;
 
 /// Returns the number of frames to run: fewer for the largest scenes.
 fn frames(scene: &Scene) -> u32 {
@@ -53,7 +53,7 @@ fn built_in_scenes_keep_their_bits() {
         }
         writeln!(found, "{} {:016x}", scene.name, hash(&*simulation)).expect("writing to a string");
     }
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/io/golden.txt");
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scene/golden.txt");
     if std::env::var_os("LAHAR_UPDATE").is_some() {
         std::fs::write(&path, &found).expect("the table can be written");
     }

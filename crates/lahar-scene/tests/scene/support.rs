@@ -1,7 +1,7 @@
 //! Helpers that make scenes and read what they build.
 
 use lahar::{Data, Field, Isa, Simulate};
-use lahar_io::scene::Scene;
+use lahar_scene::scene::Scene;
 
 /// Returns overrides as the command line passes them.
 pub(crate) fn overrides(pairs: &[(&str, &str)]) -> Vec<(String, String)> {

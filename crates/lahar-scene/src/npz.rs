@@ -494,7 +494,7 @@ pub enum Compression {
 /// Writes an `.npz`, array after array. The same arrays give the same bytes: no time is recorded.
 ///
 /// ```
-/// use lahar_io::npz::{Compression, NpzWriter};
+/// use lahar_scene::npz::{Compression, NpzWriter};
 /// use lahar::Data;
 /// let mut bytes = std::io::Cursor::new(Vec::new());
 /// let mut npz = NpzWriter::new(&mut bytes, Compression::Stored);

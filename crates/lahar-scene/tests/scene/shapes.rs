@@ -1,7 +1,7 @@
 //! Shapes of bodies: their volumes and their centers.
 
 use lahar::{Data, Field, Isa};
-use lahar_io::scene::Scene;
+use lahar_scene::scene::Scene;
 use std::f64::consts::PI;
 use std::path::Path;
 

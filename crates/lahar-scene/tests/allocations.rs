@@ -1,7 +1,7 @@
 //! Formulas of a scene allocate no memory while it runs, once buffers have grown.
 
 use lahar::Isa;
-use lahar_io::scene::Scene;
+use lahar_scene::scene::Scene;
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
 

@@ -3,7 +3,7 @@
 //! tests/peers/make_tables.py ran the programs and wrote lineage.csv.
 
 use lahar::{Data, Field, Isa};
-use lahar_io::scene::Scene;
+use lahar_scene::scene::Scene;
 
 /// Returns the rows of the table: scene, substep, figures.
 fn table() -> Vec<(&'static str, u64, Vec<f64>)> {

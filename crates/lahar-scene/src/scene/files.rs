@@ -2,12 +2,27 @@
 //! a device or a pipe would never end.
 
 use crate::builtin;
-use crate::checkpoint::KeptFile;
 use crate::error::{SceneError, nearest};
+use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+
+/// The copy of a file that a scene names.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct KeptFile {
+    /// As the scene names it.
+    pub name: String,
+    /// Whether it was looked for where the command was given, not beside the scene.
+    pub here: bool,
+    /// The copy's name in `checkpoints/files/`.
+    pub copy: String,
+    /// Its length.
+    pub bytes: u64,
+    /// CRC-32 of its bytes.
+    pub crc32: u32,
+}
 
 /// Largest scene file \[bytes\]: beyond it, it is something else.
 const LARGEST_SCENE: u64 = 16 << 20;

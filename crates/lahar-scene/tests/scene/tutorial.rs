@@ -1,7 +1,7 @@
 //! docs/tutorial.md: its scenes run, and its error messages and figures are those of the program.
 
 use lahar::Isa;
-use lahar_io::scene::Scene;
+use lahar_scene::scene::Scene;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/tutorial.md");
 

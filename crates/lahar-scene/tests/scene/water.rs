@@ -2,7 +2,7 @@
 
 use crate::support::parse;
 use lahar::{Command, Diagnostics, Field, Isa, Simulate};
-use lahar_io::scene::Scene;
+use lahar_scene::scene::Scene;
 
 const G: f64 = 9.81; // m/s²
 

@@ -2,8 +2,8 @@
 
 use crate::support::{build, column, overrides, parse};
 use lahar::{Field, Isa};
-use lahar_io::npz::{Compression, NpzWriter};
-use lahar_io::scene::{Limits, Precision, Scene};
+use lahar_scene::npz::{Compression, NpzWriter};
+use lahar_scene::scene::{Limits, Precision, Scene};
 use proptest::prelude::*;
 
 const COLUMN: &str = r#"
@@ -421,7 +421,7 @@ proptest! {
 
     #[test]
     fn mutated_scenes_never_panic(cuts in prop::collection::vec((any::<prop::sample::Index>(), 0_usize..12, prop::sample::select(PIECES)), 1..4), which in any::<prop::sample::Index>()) {
-        let all = lahar_io::builtin::list();
+        let all = lahar_scene::builtin::list();
         let mut text = all[which.index(all.len())].text.to_owned();
         for (at, length, piece) in cuts {
             let mut start = at.index(text.len());
@@ -452,7 +452,7 @@ proptest! {
 
     #[test]
     fn particle_lists_never_panic(text in "[xyvJFC0-9,.\n\r -]{0,120}") {
-        let read = lahar_io::particle_list::parse_csv::<2>;
+        let read = lahar_scene::particle_list::parse_csv::<2>;
         let _ = read(&text, "a.csv");
         if let Ok(list) = read(&format!("x,y,vx,vy,J\n{text}"), "a.csv") {
             prop_assert_eq!(list.position.len(), list.velocity.len());
@@ -508,6 +508,6 @@ fn colliders_are_read_back_from_a_record() {
         assert!(!scene.colliders.is_empty());
         let text = scene.resolved().to_string();
         let resolved = serde_json::from_str(&text).unwrap();
-        assert_eq!(lahar_io::scene::colliders_of(&resolved), scene.colliders);
+        assert_eq!(lahar_scene::scene::colliders_of(&resolved), scene.colliders);
     }
 }

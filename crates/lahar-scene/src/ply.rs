@@ -105,10 +105,7 @@ const LONGEST_HEADER: usize = 1 << 20;
 ///
 /// # Errors
 /// The first thing that is not as the header says, or that particles cannot have.
-pub(crate) fn parse_ply<const D: usize>(
-    bytes: &[u8],
-    name: &str,
-) -> Result<ParticleList<D>, SceneError> {
+pub fn parse_ply<const D: usize>(bytes: &[u8], name: &str) -> Result<ParticleList<D>, SceneError> {
     let header = parse_header(bytes, name)?;
     let fail = |message: String| SceneError::of_file(name, message);
     let before = header

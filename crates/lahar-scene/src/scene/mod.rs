@@ -12,10 +12,10 @@
 //!     material = "water"
 //!     shape = { box = { min = [0.0, 0.0], max = [0.5, 0.5] } }
 //! "#;
-//! let scene = lahar_io::scene::Scene::parse(text, "column.toml", &[])?;
+//! let scene = lahar_scene::scene::Scene::parse(text, "column.toml", &[])?;
 //! let built = scene.build(lahar::Isa::Portable)?;
 //! assert_eq!(built.simulation.particle_count(), 400);
-//! # Ok::<(), lahar_io::error::SceneError>(())
+//! # Ok::<(), lahar_scene::error::SceneError>(())
 //! ```
 
 mod build;
@@ -45,15 +45,13 @@ pub use controls::Controls;
 pub(crate) use document::shorten;
 pub(crate) use files::not_text;
 pub use reference::{docs, docs_of, schema};
-
 pub use stiffness::SoundSpeeds;
 
 use crate::builtin;
-use crate::checkpoint::KeptFile;
 use crate::error::SceneError;
 use document::{Document, Span, json_table};
-pub use files::SceneFile;
 use files::{Files, Place, read_text};
+pub use files::{KeptFile, SceneFile};
 use lahar::particles::{FIELDS, FieldInfo};
 use lahar::{Field, Isa, Simulate, Simulation, TimeStep};
 use motion::InMotion;
@@ -272,8 +270,11 @@ impl Scene {
         Self::parse_within(&read_text(what)?, what, overrides, limits)
     }
 
-    /// A scene that a run has kept with copies of its files, which are in a folder.
-    pub(crate) fn kept(
+    /// Reads a scene that a run has kept: its text, and copies of its `files` in `folder`.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its line and column.
+    pub fn kept(
         name: &str,
         text: &str,
         overrides: &[(String, String)],

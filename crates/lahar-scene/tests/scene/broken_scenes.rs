@@ -3,8 +3,8 @@
 //! The messages are recorded in the folder snapshots (`cargo insta review` after a change).
 
 use crate::support::overrides;
-use lahar_io::error::SceneError;
-use lahar_io::scene::{Limits, Scene};
+use lahar_scene::error::SceneError;
+use lahar_scene::scene::{Limits, Scene};
 use std::fmt::Write;
 use tempfile::TempDir;
 

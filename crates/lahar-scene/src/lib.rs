@@ -1,0 +1,16 @@
+//! Scenes of the lahar simulator: TOML text, the particles and meshes that it names, and what they build.
+
+mod after_error;
+pub mod builtin;
+pub mod error;
+mod even;
+mod expression;
+#[doc(hidden)]
+pub mod fuzzing;
+mod mesh_file;
+pub mod npz;
+pub mod particle_list;
+pub mod ply;
+pub mod sampling;
+pub mod scene;
+pub mod shape;
