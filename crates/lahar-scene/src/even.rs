@@ -15,11 +15,11 @@ mod nodes;
 mod pieces;
 mod sorted;
 
+use crate::parallel::*;
 use crate::shape::Region;
 use lahar::Kernel;
 use lahar::kernel::{BSpline, Cubic, Linear, Quadratic};
 use nodes::{Lattice, Nodes};
-use rayon::prelude::*;
 use sorted::Sorted;
 
 /// How often volumes are compared with the shape: what is left of jittered particles' unevenness is .59,
@@ -104,6 +104,7 @@ mod tests {
         (inside.iter().map(|x| x * x).sum::<f64>() / inside.len() as f64).sqrt()
     }
 
+    #[cfg(feature = "threads")]
     #[test]
     fn threads_do_not_change_the_bits() {
         let shape = Shape::Ball {

@@ -1,5 +1,6 @@
 //! Scenes of the lahar simulator: TOML text, the particles and meshes that it names, and what they build.
 
+#[cfg(feature = "npz")]
 mod after_error;
 pub mod builtin;
 pub mod error;
@@ -8,7 +9,9 @@ mod expression;
 #[doc(hidden)]
 pub mod fuzzing;
 mod mesh_file;
+#[cfg(feature = "npz")]
 pub mod npz;
+mod parallel;
 pub mod particle_list;
 pub mod ply;
 pub mod sampling;

@@ -4,10 +4,10 @@
 //! the first axis, lines along the second, planes along the third: a piece costs a few additions.
 
 use super::nodes::{Lattice, Nodes};
+use crate::parallel::*;
 use crate::sampling::lattice_size;
 use crate::shape::Region;
 use lahar::kernel::{BSpline, STENCIL};
-use rayon::prelude::*;
 
 /// Pieces along dx.
 const FINE: f64 = 4.0;

@@ -9,8 +9,8 @@
 //! ```
 
 use super::nodes::{Lattice, Nodes};
+use crate::parallel::*;
 use lahar::kernel::{BSpline, STENCIL};
-use rayon::prelude::*;
 
 /// Planes of nodes in a slab: at least as many as kernels reach beyond it.
 const SLAB: usize = 4;

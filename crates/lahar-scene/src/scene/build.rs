@@ -3,11 +3,11 @@
 use super::forces::lattice;
 use super::plan::{Body, Plan, Source, Volume};
 use crate::even::even_volumes;
+use crate::parallel::*;
 use crate::sampling::{Random, Sampling, sample};
 use lahar::boundary::Placed;
 use lahar::material::Fluid;
 use lahar::{Collider, Deformation, Model, ParticleBatch, Setup};
-use rayon::prelude::*;
 
 impl<const D: usize> Plan<D> {
     /// What the simulator is made from.

@@ -2,11 +2,11 @@
 //! part of what is known of a particle at the start.
 
 use super::plan::{Body, Plan};
+use crate::parallel::*;
 use crate::sampling::Random;
 use crate::shape::Shape;
 use core::ops::Range;
 use lahar::{Deformation, ParticleBatch};
-use rayon::prelude::*;
 
 /// Particles handed on together.
 const A_PART: usize = 1 << 18;

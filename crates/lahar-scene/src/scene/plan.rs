@@ -961,6 +961,28 @@ pub(super) fn point(p: &[f64]) -> String {
     format!("({})", parts.join(", "))
 }
 
+/// Reads a particle list from one of NumPy's archives.
+#[cfg(feature = "npz")]
+fn read_archive<const D: usize>(
+    file: &std::path::Path,
+    limits: &Limits,
+) -> Result<ParticleList<D>, SceneError> {
+    crate::particle_list::read_npz(file, limits.memory)
+}
+
+/// Refuses NumPy's archives: this build has no reader of them.
+#[cfg(not(feature = "npz"))]
+fn read_archive<const D: usize>(
+    file: &std::path::Path,
+    _: &Limits,
+) -> Result<ParticleList<D>, SceneError> {
+    let name = file.display().to_string();
+    Err(SceneError::of_file(
+        name,
+        "this build of lahar does not read .npz files; give a .csv or .ply file",
+    ))
+}
+
 fn read_list<const D: usize>(
     table: &Reader<'_>,
     path: &str,
@@ -1005,7 +1027,7 @@ fn read_list<const D: usize>(
         crate::ply::parse_ply(&bytes, path)?
     } else if lower.ends_with(".npz") {
         let file = files.path(path, here).map_err(cannot)?;
-        crate::particle_list::read_npz(&file, limits.memory)?
+        read_archive(&file, limits)?
     } else {
         return Err(table.error_at("particles", "a particle list is a .csv, .npz or .ply file"));
     };
