@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use lahar::Isa;
+use lahar_io::files::{make_folder, write_file};
 use lahar_lab::bench::{self, BenchError, Case, Machine, Options, Report};
 use serde_json::json;
 
@@ -119,18 +120,15 @@ fn read(path: &Path) -> Result<Report, CliError> {
 
 /// Draws the plots into `folder`; returns their paths.
 fn draw(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, CliError> {
-    let cannot = |path: &Path, error: std::io::Error| {
-        CliError::Machine(format!("{}: cannot write: {error}", path.display()))
-    };
-    fs::create_dir_all(folder).map_err(|error| cannot(folder, error))?;
+    make_folder(folder)?;
     let plots = bench::growth(&report.results).into_iter();
     plots
         .map(|(name, plot)| {
-            let path = folder.join(name).with_extension("svg");
+            let path = folder.join(format!("{name}.svg"));
             let svg = plot
                 .svg_from_zero()
                 .map_err(|error| CliError::Machine(error.to_string()))?;
-            fs::write(&path, svg).map_err(|error| cannot(&path, error))?;
+            write_file(&path, svg)?;
             Ok(path)
         })
         .collect()

@@ -12,6 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use lahar_io::files::make_folder;
 use lahar_io::image::{Film, Picture, beside};
 use lahar_io::output::{RunFolder, film_pace};
 use lahar_scene::scene::{Comparison, Scene};
@@ -39,8 +40,7 @@ pub(crate) fn compare(args: &args::Run, comparison: &Comparison) -> Result<ExitC
         plans.push(Plan::from_args(&args)?);
     }
     let folder = match &args.output {
-        Some(path) if args.overwrite => path.clone(),
-        Some(path) => RunFolder::at(path, false)?.into_plain()?,
+        Some(path) => RunFolder::for_comparison(path, args.overwrite)?,
         None => RunFolder::numbered(Path::new(""), &format!("{}-compared", plans[0].name()))?
             .into_plain()?,
     };
@@ -94,7 +94,7 @@ fn pictures_beside(
         });
     }
     let images = folder.join("images");
-    fs::create_dir_all(&images).map_err(|error| cannot(&images, error))?;
+    make_folder(&images)?;
     let (mut film, names) = (Film::new(rate), common.unwrap_or_default());
     for name in &names {
         let mut pictures = Vec::new();

@@ -44,7 +44,7 @@ pub(crate) fn mesh(args: &args::Mesh) -> Result<ExitCode, CliError> {
         Ok(format!("t = {:.3} s  {triangles} triangles", snapshot.time))
     })?;
     for name in names {
-        terminal::print(&format!("  {}/\n", folder.join(name).display()));
+        terminal::print(&format!("  {}/\n", files.folder_of(name).display()));
     }
     Ok(match end {
         End::Done => ExitCode::SUCCESS,

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD as BASE64;
+use lahar_io::files::{confined, write_file};
 use lahar_io::image::Scenery;
 use lahar_io::output::{Record, Recording, Status, Table, read_record};
 
@@ -35,8 +36,7 @@ pub(crate) fn report(args: &args::Report) -> Result<ExitCode, CliError> {
         Some(path) => path.clone(),
         None => folder.join("report.html"),
     };
-    fs::write(&path, page)
-        .map_err(|error| CliError::Machine(format!("{}: cannot write: {error}", path.display())))?;
+    write_file(&path, page)?;
     terminal::print(&format!("  {}\n", path.display()));
     Ok(ExitCode::SUCCESS)
 }
@@ -131,7 +131,9 @@ fn outcome(record: &Record) -> String {
 fn pictures(folder: &Path) -> String {
     let mut figures = Vec::new();
     for film in ["video.gif", "render/video.gif"] {
-        let path = folder.join(film);
+        let Ok(path) = confined(folder, film) else {
+            continue;
+        };
         let small = fs::metadata(&path).is_ok_and(|file| file.len() <= LARGEST_FILM);
         if let Some(bytes) = small.then(|| fs::read(&path).ok()).flatten() {
             figures.push(figure("image/gif", &bytes, "the whole run"));

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use lahar_io::output::Table;
+use lahar_io::files::{is_link, make_folder, write_file};
+use lahar_io::output::{PROBE_PLOT, Table};
 use lahar_lab::plot::{Line, Plot};
 
 use crate::error::CliError;
@@ -102,13 +103,11 @@ pub(crate) fn plot(args: &args::Plot) -> Result<ExitCode, CliError> {
 /// Draws all figures of `runs`, each with its name, into `folder`; returns the files.
 pub(crate) fn draw(runs: &[(String, PathBuf)], folder: &Path) -> Result<Vec<PathBuf>, CliError> {
     let figures = figures(runs)?;
-    let cannot = |what: String| CliError::Machine(format!("{}: {what}", folder.display()));
-    fs::create_dir_all(folder).map_err(|error| cannot(format!("cannot make it: {error}")))?;
+    make_folder(folder)?;
     let mut files = Vec::new();
     for (name, svg) in figures {
-        let path = folder.join(name).with_extension("svg");
-        fs::write(&path, svg)
-            .map_err(|error| cannot(format!("cannot write {}: {error}", path.display())))?;
+        let path = folder.join(format!("{name}.svg"));
+        write_file(&path, svg)?;
         files.push(path);
     }
     Ok(files)
@@ -138,7 +137,7 @@ pub(crate) fn figures(runs: &[(String, PathBuf)]) -> Result<Vec<(String, String)
     }
     for (probe, plot) in probe_plots(runs)? {
         let Ok(svg) = plot.svg() else { continue };
-        figures.push((format!("probe-{probe}"), svg));
+        figures.push((format!("{PROBE_PLOT}{probe}"), svg));
     }
     Ok(figures)
 }
@@ -148,11 +147,16 @@ fn probe_plots(runs: &[(String, PathBuf)]) -> Result<BTreeMap<String, Plot>, Cli
     let mut plots = BTreeMap::<String, Plot>::new();
     for (run, folder) in runs {
         // Runs without probes have no such folder.
-        let Ok(entries) = fs::read_dir(folder.join("probes")) else {
+        let probes = folder.join("probes");
+        if is_link(&probes) {
+            continue;
+        }
+        let Ok(entries) = fs::read_dir(probes) else {
             continue;
         };
         let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-        paths.retain(|path| path.extension().is_some_and(|extension| extension == "csv"));
+        let is_csv = |path: &Path| path.extension().is_some_and(|ending| ending == "csv");
+        paths.retain(|path| is_csv(path) && !is_link(path));
         paths.sort();
         for path in paths {
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -232,5 +236,20 @@ impl Figure {
             }
         }
         lines
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lahar_io::output::PLOTS;
+
+    /// `--overwrite` removes plots by their names.
+    #[test]
+    fn plots_are_those_that_a_run_folder_knows() {
+        assert_eq!(
+            FIGURES.iter().map(|figure| figure.file).collect::<Vec<_>>(),
+            PLOTS
+        );
     }
 }

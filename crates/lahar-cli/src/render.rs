@@ -1,10 +1,9 @@
 //! `lahar render`: pictures and films of a run's frames, long after it has run.
 
-use std::fs;
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use lahar_io::files::make_folder;
 use lahar_io::image::{self, Mp4, Mp4Maker, Picture};
 use lahar_io::output::{Recording, film_pace, frame_name};
 use lahar_scene::scene::Scene;
@@ -31,7 +30,7 @@ pub(crate) fn render(args: &args::Render) -> Result<ExitCode, CliError> {
         Some(folder) => folder.clone(),
         None => recording.folder().join("render"),
     };
-    fs::create_dir_all(&folder).map_err(|error| cannot(&folder, &error))?;
+    make_folder(&folder)?;
     let rate = film_rate(&recording, &scene, &chosen);
     let end = match draw(args, &recording, &folder, rate, &mut painter)? {
         Drawn::All(end) => end,
@@ -178,12 +177,7 @@ impl Films {
 
     fn finish(self) -> Result<(), CliError> {
         let (path, film) = self.gif;
-        let write = || {
-            let mut writer = BufWriter::new(fs::File::create(&path)?);
-            film.write(&mut writer)?;
-            writer.flush()
-        };
-        write().map_err(|error| cannot(&path, &error))?;
+        film.save(&path).map_err(|error| cannot(&path, &error))?;
         terminal::print(&format!("  {}\n", path.display()));
         if let Some((path, _, Some(film))) = self.mp4 {
             film.finish().map_err(|error| cannot(&path, &error))?;

@@ -1,10 +1,12 @@
-//! `lahar resume`: from the newest checkpoint that can be used, or from the beginning, to the end.
+//! `lahar resume`: takes a run from its newest usable checkpoint, or from the beginning, to its end or a later one.
 
 use std::fs;
 use std::process::ExitCode;
 
+use lahar::Checkpoint;
 use lahar_io::checkpoint::{Header, Newest, Start, Store, Unusable};
 use lahar_io::output::{Record, RunFolder, Status};
+use lahar_scene::scene::Scene;
 use serde_json::json;
 
 use crate::args;
@@ -13,7 +15,7 @@ use crate::plan::Plan;
 use crate::run::{self, Origin};
 use crate::terminal;
 
-/// Goes on with the run in `args.folder`.
+/// Resumes the run in `args.folder`.
 pub(crate) fn resume(args: &args::Resume) -> Result<ExitCode, CliError> {
     let folder = RunFolder::of_run(&args.folder)?;
     let checkpoints = folder.checkpoints();
@@ -30,45 +32,78 @@ pub(crate) fn resume(args: &args::Resume) -> Result<ExitCode, CliError> {
         Unusable::File(error) => CliError::Output(error),
         Unusable::Scene(error) => CliError::Scene(error),
     })?;
-    let end = match (args.frames, args.until) {
-        (Some(frames), _) => Some(frames),
-        // A little less, so that 0.1 s at 60 frames a second is 6 frames.
-        (None, Some(time)) => Some((time * scene.frame_rate - 1e-9).ceil().max(1.0) as u64),
-        (None, None) => None,
-    };
-    if let Some(end) = end.filter(|end| *end != start.frames) {
-        if end < start.frames {
-            return Err(CliError::Usage(format!(
-                "{} goes to frame {} already; it can go on to a later one",
-                folder.path().display(),
-                start.frames
-            )));
-        }
-        start.frames = end;
-        start.rewrite(&checkpoints)?;
-    } else if let Some(record) = done(&folder, start.frames) {
-        let what = format!(
-            "{} is done: {} frames to t = {:.4} s",
+    let finished = finished_record(&folder, start.frames);
+    let last_frame = last_frame(args, &scene).unwrap_or(start.frames);
+    if last_frame < start.frames {
+        return Err(CliError::Usage(format!(
+            "{} goes to frame {} already; it can go on to a later one",
             folder.path().display(),
-            record.frames,
-            record.time
-        );
-        if args.json {
-            terminal::print_json(&json!({
-                "status": "done",
-                "folder": folder.path(),
-                "frames": record.frames,
-                "time": record.time,
-            }));
-        } else {
-            terminal::print(&format!(
-                "{what}; `lahar resume {} --until T` goes on beyond its end\n",
-                folder.path().display()
-            ));
-        }
+            start.frames
+        )));
+    }
+    let is_extended = last_frame > start.frames;
+    if let Some(record) = finished.as_ref().filter(|_| !is_extended) {
+        report_finished(&folder, record, args.json);
         return Ok(ExitCode::SUCCESS);
     }
+    start.frames = last_frame;
     let plan = Plan::of_start(&start, scene, args.threads, args.isa)?;
+    let checkpoint = checkpoint(args, &folder, &start, &plan, finished.is_some())?;
+    if is_extended {
+        start.rewrite(&checkpoints)?;
+    }
+    let origin = Origin {
+        folder,
+        start,
+        checkpoint,
+    };
+    run::begin(plan, Some(origin), args.json)
+}
+
+/// The last frame that the options ask for.
+fn last_frame(args: &args::Resume, scene: &Scene) -> Option<u64> {
+    match (args.frames, args.until) {
+        (Some(frames), _) => Some(frames),
+        // A little less, so that 0.1 s at 60 frames per second is 6 frames.
+        (None, Some(time)) => Some((time * scene.frame_rate - 1e-9).ceil().max(1.0) as u64),
+        (None, None) => None,
+    }
+}
+
+/// The record of the run, if it is finished.
+fn finished_record(folder: &RunFolder, frames: u64) -> Option<Record> {
+    let record: Record = serde_json::from_slice(&fs::read(folder.record()).ok()?).ok()?;
+    (record.status == Status::Done && record.frames > frames).then_some(record)
+}
+
+fn report_finished(folder: &RunFolder, record: &Record, as_json: bool) {
+    if as_json {
+        terminal::print_json(&json!({
+            "status": "done",
+            "folder": folder.path(),
+            "frames": record.frames,
+            "time": record.time,
+        }));
+    } else {
+        let path = folder.path().display();
+        terminal::print(&format!(
+            "{path} is done: {} frames to t = {:.4} s; `lahar resume {path} --until T` goes on beyond its end\n",
+            record.frames, record.time
+        ));
+    }
+}
+
+/// The newest checkpoint that can be used, with warnings about newer ones. `None`: the run starts over.
+///
+/// # Errors
+/// If the run is finished and all its checkpoints are unusable: starting over would replace a whole run.
+fn checkpoint(
+    args: &args::Resume,
+    folder: &RunFolder,
+    start: &Start,
+    plan: &Plan,
+    is_finished: bool,
+) -> Result<Option<(Header, Checkpoint)>, CliError> {
     let sum = start.sum();
     let usable = |header: &Header| {
         if header.start != sum || header.lahar != start.lahar {
@@ -82,36 +117,40 @@ pub(crate) fn resume(args: &args::Resume) -> Result<ExitCode, CliError> {
         }
         header.progress.output.check(folder.path())
     };
-    let Newest { found, refused } = Store::new(&checkpoints).newest(usable);
+    let Newest { found, refused } = Store::new(&folder.checkpoints()).newest(usable);
     for error in &refused {
         terminal::note(&format!("warning: {error}"));
     }
-    if found.is_none() {
+    let Some((_, mut header, checkpoint)) = found else {
+        if is_finished && !refused.is_empty() {
+            return Err(CliError::Usage(format!(
+                "{} is finished and none of its checkpoints can be used, so it cannot go on beyond its end; `lahar run` into another folder makes a longer run",
+                folder.path().display()
+            )));
+        }
         terminal::note(match refused.is_empty() {
             true => "there is no checkpoint yet: the run starts over",
             false => "warning: no checkpoint can be used: the run starts over",
         });
-    }
-    let checkpoint = found.map(|(_, header, checkpoint)| {
-        let missing = header.progress.output.missing(folder.path());
-        if let Some(first) = missing.first() {
-            terminal::note(&format!(
-                "warning: {} file(s) written before the checkpoint are gone or cut, {first} the first; they are not made again: `lahar run` into another folder makes all",
-                missing.len()
-            ));
-        }
-        (header, checkpoint)
-    });
-    let origin = Origin {
-        folder,
-        start,
-        checkpoint,
+        return Ok(None);
     };
-    run::begin(plan, Some(origin), args.json)
-}
-
-/// The record of a run that is done.
-fn done(folder: &RunFolder, frames: u64) -> Option<Record> {
-    let record: Record = serde_json::from_slice(&fs::read(folder.record()).ok()?).ok()?;
-    (record.status == Status::Done && record.frames > frames).then_some(record)
+    let output = &mut header.progress.output;
+    if let Some(reason) = output.forget_lost_film(folder.path()) {
+        let last_frame = output.written.frames.saturating_sub(1);
+        let kept = match folder.keep_old_video(last_frame)? {
+            Some(path) => format!("; the film so far is {}", path.display()),
+            None => String::new(),
+        };
+        terminal::note(&format!(
+            "warning: {reason}: the film begins after frame {last_frame}{kept}"
+        ));
+    }
+    let missing = output.missing(folder.path());
+    if let Some(first) = missing.first() {
+        terminal::note(&format!(
+            "warning: {} file(s) written before the checkpoint are gone or cut, {first} the first; they are not made again: `lahar run` into another folder makes all",
+            missing.len()
+        ));
+    }
+    Ok(Some((header, checkpoint)))
 }

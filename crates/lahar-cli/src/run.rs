@@ -85,9 +85,6 @@ pub(crate) fn begin(
     let recorded = record.write(&folder.record());
     let (end, written) = outcome.map_err(|error| into_cli_error(error, &folder))?;
     recorded?;
-    if end == End::Done {
-        folder.forget_film_pictures()?;
-    }
     summary::print(&plan, &record, &folder, end, written, as_json);
     Ok(match end {
         End::Interrupted => ExitCode::from(INTERRUPTED),

@@ -1,10 +1,10 @@
 //! `lahar validate`: physics cases against their references, as a table, a report and plots.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use lahar::Isa;
+use lahar_io::files::{make_folder, write_file};
 use lahar_lab::validate::{self, Case, Options, Outcome};
 
 use crate::error::{CliError, FAILED};
@@ -121,20 +121,15 @@ fn how(args: &args::Validate, threads: usize, isa: Isa, seconds: f64) -> String 
 /// Writes the report and the plots into `folder`; returns how many plots.
 fn write(outcomes: &[(&Case, Outcome)], folder: &Path, how: &str) -> Result<usize, CliError> {
     let images = folder.join(IMAGES);
-    let cannot = |path: &Path, error: std::io::Error| {
-        CliError::Machine(format!("{}: cannot write: {error}", path.display()))
-    };
-    fs::create_dir_all(&images).map_err(|error| cannot(&images, error))?;
+    make_folder(&images)?;
     let mut count = 0;
     for (name, plot) in outcomes.iter().flat_map(|(_, outcome)| &outcome.plots) {
         // A run that failed early may have nothing to draw.
         let Ok(svg) = plot.svg() else { continue };
-        let path = images.join(name).with_extension("svg");
-        fs::write(&path, svg).map_err(|error| cannot(&path, error))?;
+        write_file(&images.join(format!("{name}.svg")), svg)?;
         count += 1;
     }
-    let path = folder.join("validation.md");
     let document = validate::document(outcomes, IMAGES, how);
-    fs::write(&path, document).map_err(|error| cannot(&path, error))?;
+    write_file(&folder.join("validation.md"), document)?;
     Ok(count)
 }

@@ -3,6 +3,7 @@
 pub mod checkpoint;
 pub mod driver;
 pub mod export;
+pub mod files;
 #[doc(hidden)]
 pub mod fuzzing;
 pub mod image;

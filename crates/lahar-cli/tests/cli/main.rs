@@ -4,5 +4,6 @@ mod commands;
 mod measure;
 mod pictures;
 mod resume;
+mod run_folder;
 mod support;
 mod view;

@@ -50,7 +50,7 @@ checkpoint_every = 3
 "#;
 
 /// Makes a folder with the scene and its list of particles.
-fn with_scene() -> TempDir {
+pub(crate) fn with_scene() -> TempDir {
     let here = here();
     fs::write(here.path().join("scene.toml"), SCENE).unwrap();
     let places = (0..100).map(|i| {
@@ -66,7 +66,7 @@ fn with_scene() -> TempDir {
 
 /// Returns the files of a run by their paths: all but checkpoints/, and run.json without the entries that depend on the
 /// clock.
-fn files(run: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+pub(crate) fn files(run: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     fn walk(root: &Path, folder: &Path, into: &mut BTreeMap<PathBuf, Vec<u8>>) {
         for entry in fs::read_dir(folder).expect("a folder") {
             let path = entry.expect("an entry").path();
@@ -110,7 +110,7 @@ fn assert_same(one: &Path, other: &Path) {
     }
 }
 
-fn checkpoints(run: &Path) -> Vec<PathBuf> {
+pub(crate) fn checkpoints(run: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(run.join("checkpoints")).into_iter().flatten();
     let paths = entries.map(|entry| entry.expect("an entry").path());
     let mut found: Vec<_> = paths
@@ -188,7 +188,8 @@ fn a_killed_run_is_resumed_to_the_same_files() {
         assert_same(&whole, &here.join(run));
     }
     assert_eq!(checkpoints(&whole).len(), 2);
-    assert!(!whole.join("checkpoints/film").exists());
+    // The pictures of the film stay, for a run that is extended.
+    assert!(whole.join("checkpoints/film").exists());
     // A finished run stays finished.
     let output = lahar(here, &["resume", "later", "--json"]);
     code(&output, 0);
@@ -292,7 +293,7 @@ fn a_run_is_extended_beyond_its_end() {
 }
 
 /// Makes a run that was killed after some frames and two checkpoints.
-fn stopped(here: &Path, name: &str) -> PathBuf {
+pub(crate) fn stopped(here: &Path, name: &str) -> PathBuf {
     let run = here.join(name);
     let words = ["run", "scene.toml", "-o", name, "--threads=1"];
     kill(until(here, &words, || checkpoints(&run).len() > 1));

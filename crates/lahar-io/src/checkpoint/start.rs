@@ -6,7 +6,9 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::output::{OutputError, sync_folder, write_whole};
+use crate::files::{
+    Durability, OutputError, confined, is_link, make_folder, sync_folder, write_whole,
+};
 use lahar_scene::error::SceneError;
 use lahar_scene::scene::{KeptFile, Limits, Scene};
 
@@ -37,9 +39,9 @@ const NAME: &str = "start.json";
 const FILES: &str = "files";
 
 impl Start {
-    /// Whether `folder` (`DIR/checkpoints`) tells what a run began with.
+    /// Returns true if `folder` (`DIR/checkpoints`) holds the start of a run.
     pub fn is_in(folder: &Path) -> bool {
-        folder.join(NAME).exists()
+        !is_link(&folder.join(NAME)) && Self::read(folder).is_ok()
     }
 
     /// Copies the files of `scene` to `folder`, and writes this there. When it returns all is on the disk.
@@ -50,12 +52,12 @@ impl Start {
         let files = folder.join(FILES);
         self.files.clear();
         for (index, file) in scene.files.iter().enumerate() {
-            fs::create_dir_all(&files).map_err(OutputError::at(&files))?;
+            make_folder(&files)?;
             let ending = Path::new(&file.name).extension().unwrap_or_default();
             let copy = Path::new(&index.to_string()).with_extension(ending);
             let path = files.join(&copy);
             let mut sum = Summed::default();
-            write_whole(&path, true, |mut writer| {
+            write_whole(&path, Durability::Immediate, |mut writer| {
                 let mut from = file.open()?;
                 io::copy(&mut from, &mut Both(&mut writer, &mut sum))?;
                 Ok(writer)
@@ -79,7 +81,7 @@ impl Start {
     /// # Errors
     /// If it cannot be written; what was there stays.
     pub fn rewrite(&self, folder: &Path) -> Result<(), OutputError> {
-        write_whole(&folder.join(NAME), true, |mut writer| {
+        write_whole(&folder.join(NAME), Durability::Immediate, |mut writer| {
             writer.write_all(&self.text()?)?;
             Ok(writer)
         })?;
@@ -120,7 +122,8 @@ impl Start {
     pub fn scene(&self, folder: &Path) -> Result<Scene, Unusable> {
         let files = folder.join(FILES);
         for kept in &self.files {
-            let path = files.join(&kept.copy);
+            let path = confined(&files, &kept.copy)
+                .map_err(|what| Unusable::File(OutputError::usage(&files, what)))?;
             let mut sum = Summed::default();
             let read = File::open(&path).and_then(|mut file| io::copy(&mut file, &mut sum));
             let what = match read {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use lahar::Checkpoint;
 
 use super::format::{self, Header};
-use crate::output::{OutputError, sync_folder, write_whole};
+use crate::files::{Durability, OutputError, sync_folder, write_whole};
 
 const ENDING: &str = "checkpoint";
 
@@ -44,7 +44,7 @@ impl Store {
     pub fn add(&self, header: &Header, checkpoint: &Checkpoint) -> Result<PathBuf, OutputError> {
         let name = format!("{:06}.{ENDING}", header.progress.frame);
         let path = self.folder.join(name);
-        write_whole(&path, true, |writer| {
+        write_whole(&path, Durability::Immediate, |writer| {
             format::write(writer, header, checkpoint)
         })?;
         sync_folder(&self.folder)?;

@@ -5,7 +5,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use crate::output::{Length, OutputError};
+use crate::files::{Durability, Length, OutputError, write_whole_io};
 
 const HEAD: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
 const TAIL: &str = "</Collection>\n</VTKFile>\n";
@@ -32,9 +32,10 @@ impl TimeSeries {
             }
         }
         let end = text.len() as u64;
-        let partial = path.with_extension("pvd.partial");
-        fs::write(&partial, text + TAIL)?;
-        fs::rename(&partial, path)?;
+        write_whole_io(path, Durability::Eventual, |mut writer| {
+            writer.write_all((text + TAIL).as_bytes())?;
+            Ok(writer)
+        })?;
         Ok(Self {
             path: path.to_owned(),
             file: OpenOptions::new().write(true).open(path)?,

@@ -4,8 +4,7 @@
 //! while colours are counted; at the end the palette is cut from the counts and the frames are written, each only
 //! where it differs from the one before.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use flate2::Compression;
@@ -14,6 +13,7 @@ use flate2::write::ZlibEncoder;
 
 use super::Picture;
 use super::palette::Colour;
+use crate::files::{Durability, write_whole_io};
 
 /// Bits a channel by which colours are told apart while counting.
 const BITS: u32 = 5;
@@ -121,9 +121,10 @@ impl Film {
     /// # Errors
     /// If there is no picture, or writing fails.
     pub fn save(&self, path: impl AsRef<Path>) -> io::Result<()> {
-        let mut writer = BufWriter::new(File::create(path)?);
-        self.write(&mut writer)?;
-        writer.flush()
+        write_whole_io(path.as_ref(), Durability::Eventual, |mut writer| {
+            self.write(&mut writer)?;
+            Ok(writer)
+        })
     }
 
     /// Writes the GIF.

@@ -17,9 +17,10 @@ mod plane;
 mod space;
 
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
+use crate::files::{Durability, write_whole_io};
 use drawn::Drawn;
 use lahar::boundary::Placed;
 use lahar::{Collider, Field, Simulate, Snapshot};
@@ -98,9 +99,10 @@ impl Picture {
     /// # Errors
     /// If the file cannot be written.
     pub fn save_png(&self, path: impl AsRef<Path>) -> io::Result<()> {
-        let mut writer = BufWriter::new(File::create(path)?);
-        self.write_png(&mut writer)?;
-        writer.flush()
+        write_whole_io(path.as_ref(), Durability::Eventual, |mut writer| {
+            self.write_png(&mut writer)?;
+            Ok(writer)
+        })
     }
 }
 

@@ -5,15 +5,14 @@ use std::path::Path;
 
 use lahar::Diagnostics;
 
-use super::OutputError;
-use super::growing::{Growing, Length};
+use crate::files::{GrowingFile, Length, OutputError};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The growing file. Every row is handed to the system at once.
 #[derive(Debug)]
 pub struct DiagnosticsFile {
-    file: Growing,
+    file: GrowingFile,
     dimension: usize,
 }
 
@@ -32,7 +31,7 @@ impl DiagnosticsFile {
         dimension: usize,
         was: Option<&Length>,
     ) -> Result<Self, OutputError> {
-        let mut file = Growing::open(path, was)?;
+        let mut file = GrowingFile::open(path, was)?;
         if was.is_none() {
             file.add(header(dimension).as_bytes())?;
         }
@@ -47,7 +46,7 @@ impl DiagnosticsFile {
         self.file.add(row(diagnostics, self.dimension).as_bytes())
     }
 
-    pub(super) fn file(&self) -> &Growing {
+    pub(super) fn file(&self) -> &GrowingFile {
         &self.file
     }
 }

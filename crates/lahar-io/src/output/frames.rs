@@ -4,8 +4,8 @@ use std::path::Path;
 
 use lahar::Snapshot;
 
-use super::{OutputError, write_whole};
 use crate::export::Format;
+use crate::files::{Durability, OutputError, write_whole};
 
 /// `000000.npz` for frame 0 and the ending `npz`.
 pub fn frame_name(index: u64, ending: &str) -> String {
@@ -17,7 +17,9 @@ pub fn frame_name(index: u64, ending: &str) -> String {
 /// # Errors
 /// If the file cannot be written.
 pub fn write_frame(path: &Path, snapshot: &Snapshot, format: Format) -> Result<(), OutputError> {
-    write_whole(path, false, |writer| format.write(writer, snapshot))
+    write_whole(path, Durability::Eventual, |writer| {
+        format.write(writer, snapshot)
+    })
 }
 
 #[cfg(test)]

@@ -1,10 +1,10 @@
 //! `meshes/MATERIAL/000000.ply`: surfaces, a folder a material, and a list by time for ParaView.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::{OutputError, frame_name, write_whole};
+use super::frame_name;
 use crate::export::{MeshFormat, TimeSeries, Triangles};
+use crate::files::{Durability, OutputError, file_name, make_folder, write_whole};
 
 /// The growing sequences.
 #[derive(Debug)]
@@ -25,12 +25,13 @@ impl MeshFiles {
         materials: &[&str],
         formats: &[MeshFormat],
     ) -> Result<Self, OutputError> {
+        make_folder(folder)?;
         let mut series = Vec::new();
         for material in materials {
-            let own = folder.join(material);
-            fs::create_dir_all(&own).map_err(OutputError::at(&own))?;
+            let name = file_name(material);
+            make_folder(&folder.join(&name))?;
             if formats.contains(&MeshFormat::Vtk) {
-                let path = folder.join(format!("{material}.pvd"));
+                let path = folder.join(format!("{name}.pvd"));
                 let list = TimeSeries::start(&path, 0).map_err(OutputError::at(&path))?;
                 series.push(((*material).to_owned(), list));
             }
@@ -40,6 +41,11 @@ impl MeshFiles {
             formats: formats.to_owned(),
             series,
         })
+    }
+
+    /// Returns the folder of a material's meshes.
+    pub fn folder_of(&self, material: &str) -> PathBuf {
+        self.folder.join(file_name(material))
     }
 
     /// Writes the mesh of a material in a frame, at a time \[s\].
@@ -55,11 +61,14 @@ impl MeshFiles {
     ) -> Result<(), OutputError> {
         for &format in &self.formats {
             let name = frame_name(frame, format.ending());
-            let path = self.folder.join(material).join(&name);
-            write_whole(&path, false, |writer| format.write(writer, mesh, time))?;
-            let list = (self.series.iter_mut()).find(|(own, _)| own == material);
+            let own = file_name(material);
+            let path = self.folder.join(&own).join(&name);
+            write_whole(&path, Durability::Eventual, |writer| {
+                format.write(writer, mesh, time)
+            })?;
+            let list = (self.series.iter_mut()).find(|(of, _)| of == material);
             if let Some((_, list)) = list.filter(|_| format == MeshFormat::Vtk) {
-                (list.push(time, &format!("{material}/{name}")))
+                (list.push(time, &format!("{own}/{name}")))
                     .map_err(OutputError::at(list.path()))?;
             }
         }

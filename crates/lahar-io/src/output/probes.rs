@@ -1,19 +1,17 @@
 //! `probes/NAME.csv`: what probes have read, a row a reading.
 
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use lahar::ProbeSamples;
 
-use super::OutputError;
-use super::growing::{Growing, Length};
+use crate::files::{GrowingFile, Length, OutputError, confined, file_name, make_folder};
 
 /// The growing files, one a probe, made when the first readings come.
 #[derive(Debug)]
 pub(super) struct ProbeFiles {
     folder: PathBuf,
-    files: Vec<Growing>,
+    files: Vec<GrowingFile>,
 }
 
 impl ProbeFiles {
@@ -26,7 +24,10 @@ impl ProbeFiles {
 
     /// Those of the run in `run`, cut back to what they were.
     pub(super) fn resume(folder: &Path, run: &Path, were: &[Length]) -> Result<Self, OutputError> {
-        let open = |was: &Length| Growing::open(&run.join(&was.file), Some(was));
+        let open = |length: &Length| {
+            let path = confined(run, &length.file).map_err(|what| OutputError::usage(run, what))?;
+            GrowingFile::open(&path, Some(length))
+        };
         Ok(Self {
             folder: folder.to_owned(),
             files: were.iter().map(open).collect::<Result<_, _>>()?,
@@ -36,10 +37,10 @@ impl ProbeFiles {
     /// Adds readings; always of the same probes.
     pub(super) fn push(&mut self, probes: &[ProbeSamples]) -> Result<(), OutputError> {
         if self.files.is_empty() && !probes.is_empty() {
-            fs::create_dir_all(&self.folder).map_err(OutputError::at(&self.folder))?;
+            make_folder(&self.folder)?;
             for probe in probes {
-                let path = self.folder.join(&probe.name).with_extension("csv");
-                let mut file = Growing::open(&path, None)?;
+                let path = self.folder.join(format!("{}.csv", file_name(&probe.name)));
+                let mut file = GrowingFile::open(&path, None)?;
                 file.add(format!("time,{}\n", probe.columns.join(",")).as_bytes())?;
                 self.files.push(file);
             }
@@ -50,7 +51,7 @@ impl ProbeFiles {
         Ok(())
     }
 
-    pub(super) fn files(&self) -> &[Growing] {
+    pub(super) fn files(&self) -> &[GrowingFile] {
         &self.files
     }
 }

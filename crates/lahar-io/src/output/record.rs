@@ -3,10 +3,10 @@
 use std::io::Write;
 use std::path::Path;
 
-use lahar::PhaseTimes;
 use serde::{Deserialize, Serialize};
 
-use super::{OutputError, write_whole};
+use crate::checkpoint::PhaseSeconds;
+use crate::files::{Durability, OutputError, write_whole};
 
 /// How a run stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,71 +20,6 @@ pub enum Status {
     Interrupted,
     /// Stopped by an error, told in `failure`.
     Failed,
-}
-
-/// Seconds by phase.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct PhaseSeconds {
-    /// Moving particles to their blocks.
-    pub sort: f64,
-    /// Setting volumes right by how full the grid is.
-    #[serde(default)]
-    pub volume: f64,
-    /// Particles to grid.
-    pub scatter: f64,
-    /// Grid update.
-    pub grid: f64,
-    /// Grid to particles.
-    pub gather: f64,
-    /// What else a frame takes: time steps, boundaries' accounts, probes, the copy that a frame that fails
-    /// begins again from.
-    #[serde(default)]
-    pub other: f64,
-    /// What the solver spent on output: copying, and waiting for the writing thread.
-    pub output: f64,
-}
-
-impl PhaseSeconds {
-    /// `seconds` of solving, divided by the solver's phases, and the seconds of output.
-    pub fn new(phases: PhaseTimes, seconds: f64, output: f64) -> Self {
-        let PhaseTimes {
-            sort,
-            volume,
-            scatter,
-            grid,
-            gather,
-            sorts: _,
-        } = phases;
-        Self {
-            sort,
-            volume,
-            scatter,
-            grid,
-            gather,
-            other: (seconds - (sort + volume + scatter + grid + gather)).max(0.0),
-            output,
-        }
-    }
-
-    /// Seconds of everything but output.
-    pub fn solving(&self) -> f64 {
-        self.sort + self.volume + self.scatter + self.grid + self.gather + self.other
-    }
-}
-
-impl core::ops::Add for PhaseSeconds {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        Self {
-            sort: self.sort + other.sort,
-            volume: self.volume + other.volume,
-            scatter: self.scatter + other.scatter,
-            grid: self.grid + other.grid,
-            gather: self.gather + other.gather,
-            other: self.other + other.other,
-            output: self.output + other.output,
-        }
-    }
 }
 
 /// The contents of `run.json`.
@@ -143,7 +78,7 @@ impl Record {
     /// # Errors
     /// If it cannot be written; a record that was there before stays.
     pub fn write(&self, path: &Path) -> Result<(), OutputError> {
-        write_whole(path, true, |mut writer| {
+        write_whole(path, Durability::Immediate, |mut writer| {
             serde_json::to_writer_pretty(&mut writer, self)?;
             writer.write_all(b"\n")?;
             Ok(writer)

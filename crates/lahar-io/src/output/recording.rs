@@ -8,6 +8,7 @@ use lahar::particles::{FIELDS, Shape};
 use lahar::{Data, Field, Snapshot};
 
 use super::Record;
+use crate::files::confined;
 use lahar_scene::npz;
 
 /// A folder that a run left, with particles in it.
@@ -61,7 +62,8 @@ impl Recording {
                 format!("dimension is {}, not 2 or 3", record.dimension),
             ));
         }
-        let frames = frame_files(&folder.join("frames"));
+        let frames = confined(folder, "frames").map_err(|what| error(folder, what))?;
+        let frames = frame_files(&frames);
         if frames.is_empty() {
             return Err(error(
                 folder,
@@ -181,6 +183,7 @@ fn frame_number(path: &Path) -> Option<u64> {
 fn frame_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<(u64, PathBuf)> = entries
+        .filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_symlink()))
         .filter_map(|entry| Some((frame_number(&entry.path())?, entry.path())))
         .collect();
     files.sort_unstable();

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use super::OutputError;
+use crate::files::OutputError;
 
 /// Named columns of numbers.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -6,16 +6,12 @@ use std::sync::mpsc::{Sender, SyncSender, channel, sync_channel};
 use std::thread::{Builder, JoinHandle};
 
 use lahar::{Checkpoint, Diagnostics, ProbeSamples, Snapshot};
-use serde::{Deserialize, Serialize};
 
-use super::growing::Growing;
 use super::probes::ProbeFiles;
-use super::{
-    DiagnosticsFile, OutputError, OutputState, RunFolder, frame_name, sync_folder, write_frame,
-    write_whole,
-};
-use crate::checkpoint::{Header, Store};
+use super::{DiagnosticsFile, RunFolder, frame_name, write_frame};
+use crate::checkpoint::{Header, OutputState, Store, Written};
 use crate::export::{Format, TimeSeries};
+use crate::files::{Durability, GrowingFile, OutputError, make_folder, sync_folder, write_whole};
 use crate::image::{self, Renderer};
 
 /// Frames that may be under way: one being written, one ready.
@@ -84,19 +80,6 @@ pub fn film_pace(frame_rate: f64, frames: u64) -> Pace {
     }
 }
 
-/// What a writer has written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Written {
-    /// Frames, files of particles and pictures or not.
-    pub frames: u64,
-    /// Files of particles.
-    pub particles: u64,
-    /// Pictures kept as PNG.
-    pub images: u64,
-    /// Whether there is a film.
-    pub film: bool,
-}
-
 enum Job {
     Frame(Box<Frame>),
     Checkpoint(Box<(Header, Checkpoint)>),
@@ -130,7 +113,7 @@ impl Writer {
             (plan.pictures.is_some(), folder.images()),
         ] {
             if wanted {
-                fs::create_dir_all(&path).map_err(OutputError::at(&path))?;
+                make_folder(&path)?;
             }
         }
         let work = Work::new(plan, from)?;
@@ -249,7 +232,7 @@ struct Work {
     diagnostics: DiagnosticsFile,
     probes: ProbeFiles,
     series: Option<TimeSeries>,
-    film: Option<(image::Film, Growing)>,
+    film: Option<(image::Film, GrowingFile)>,
     written: Written,
     /// Files of frames, from the run's folder, and their lengths.
     files: Vec<(String, u64)>,
@@ -274,7 +257,7 @@ impl Work {
                 let mut film = image::Film::new(film.pace.rate);
                 let path = folder.film_pictures();
                 let was = from.and_then(|state| state.film.as_ref());
-                let file = Growing::open(&path, was)?;
+                let file = GrowingFile::open(&path, was)?;
                 fs::read(&path)
                     .and_then(|pictures| film.unpack(&pictures))
                     .map_err(OutputError::at(&path))?;
@@ -326,7 +309,7 @@ impl Work {
             sync_folder(folder)?;
         }
         self.settled = self.files.len();
-        let settle = |file: &Growing| file.settle(run);
+        let settle = |file: &GrowingFile| file.settle(run);
         Ok(OutputState {
             written: self.written,
             diagnostics: Some(settle(self.diagnostics.file())?),
@@ -386,7 +369,7 @@ impl Work {
         if let Some(pictures) = self.plan.pictures.as_ref().filter(|p| due(p.every)) {
             let picture = pictures.renderer.render(snapshot);
             let path = folder.images().join(frame_name(index, "png"));
-            write_whole(&path, false, |mut writer| {
+            write_whole(&path, Durability::Eventual, |mut writer| {
                 picture.write_png(&mut writer)?;
                 Ok(writer)
             })?;
@@ -405,10 +388,14 @@ impl Work {
 
     fn finish(mut self) -> Result<Written, OutputError> {
         if let Some((film, _)) = self.film.filter(|(film, _)| !film.is_empty()) {
-            write_whole(&self.plan.folder.video(), false, |mut writer| {
-                film.write(&mut writer)?;
-                Ok(writer)
-            })?;
+            write_whole(
+                &self.plan.folder.video(),
+                Durability::Eventual,
+                |mut writer| {
+                    film.write(&mut writer)?;
+                    Ok(writer)
+                },
+            )?;
             self.written.film = true;
         }
         Ok(self.written)

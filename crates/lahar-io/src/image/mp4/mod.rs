@@ -10,6 +10,7 @@ use std::io;
 use std::path::Path;
 
 use super::Picture;
+use crate::files::remove_file_io;
 use ffmpeg::Ffmpeg;
 
 /// What makes MP4.
@@ -46,6 +47,8 @@ impl Mp4Maker {
     /// # Errors
     /// If the file cannot be written, or ffmpeg does not start.
     pub fn start(&self, path: &Path, rate: f64, first: &Picture) -> io::Result<Mp4> {
+        // Encoders write through links, so the file that was there makes room for a new one.
+        remove_file_io(path)?;
         let encoder = match self {
             Self::Ffmpeg(_) => Encoder::Ffmpeg(Ffmpeg::start(path, rate, first)?),
             #[cfg(feature = "mp4")]

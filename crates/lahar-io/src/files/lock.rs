@@ -1,13 +1,14 @@
-//! One run a folder.
+//! A lock that lets one process at a time write into a folder.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::Path;
 
-use crate::output::OutputError;
+use super::OutputError;
+use super::confined::refuse_link;
 
-/// Held while a run writes into a folder; the system lets go of it however the program ends.
+/// A lock on a run's folder. The system releases it when the process ends, however it ends.
 #[derive(Debug)]
-pub struct Lock {
+pub(crate) struct Lock {
     _file: File,
 }
 
@@ -15,8 +16,9 @@ impl Lock {
     /// Takes the lock at `path`, in the run's folder `run`.
     ///
     /// # Errors
-    /// Another run holds it, or it cannot be made.
-    pub fn take(path: &Path, run: &Path) -> Result<Self, OutputError> {
+    /// If another run holds it, or it cannot be made.
+    pub(crate) fn take(path: &Path, run: &Path) -> Result<Self, OutputError> {
+        refuse_link(path)?;
         let file = OpenOptions::new()
             .create(true)
             .truncate(false)
