@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use lahar_io::files::make_folder;
-use lahar_io::image::{Film, Picture, beside};
+use lahar_io::image::{Film, Picture, side_by_side};
 use lahar_io::output::{RunFolder, film_pace};
 use lahar_scene::scene::{Comparison, Scene};
 
@@ -105,7 +105,7 @@ fn pictures_beside(
         }
         let titled: Vec<_> = pictures.iter().map(|(title, p)| (*title, p)).collect();
         let path = images.join(name);
-        let Some(whole) = beside(&titled) else {
+        let Some(whole) = side_by_side(&titled) else {
             return Err(CliError::Usage(
                 "the pictures have different sizes: a value of output.picture_size is nothing to compare".into(),
             ));

@@ -7,26 +7,26 @@
 //! ```
 //! Everything a film must not change between frames (view, colours, ranges) is decided once, by [`Renderer::new`].
 
-mod beside;
+mod side_by_side;
 mod camera;
-mod drawn;
+mod drawable;
 mod film;
 mod mp4;
 mod palette;
-mod plane;
-mod space;
+mod flat;
+mod perspective;
 
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
 use crate::files::{Durability, write_whole_io};
-use drawn::Drawn;
+use drawable::Drawn;
 use lahar::boundary::Placed;
 use lahar::{Collider, Field, Simulate, Snapshot};
 use lahar_scene::scene::{ColliderInfo, Scene};
 
-pub use beside::beside;
+pub use side_by_side::side_by_side;
 pub use camera::Camera;
 pub use film::Film;
 pub use mp4::{Mp4, Mp4Maker};
@@ -303,8 +303,8 @@ fn affordable(style: &Style) -> u32 {
 
 #[derive(Clone, Debug)]
 enum View {
-    Plane(plane::Plane),
-    Space(Box<space::Space>),
+    Plane(flat::Plane),
+    Space(Box<perspective::Space>),
 }
 
 impl Renderer {
@@ -317,9 +317,9 @@ impl Renderer {
             ..style
         };
         let view = if scenery.dimension == 2 {
-            View::Plane(plane::Plane::new(&scenery, &style))
+            View::Plane(flat::Plane::new(&scenery, &style))
         } else {
-            View::Space(Box::new(space::Space::new(&scenery, &style)))
+            View::Space(Box::new(perspective::Space::new(&scenery, &style)))
         };
         Self {
             scenery,
@@ -543,8 +543,8 @@ mod tests {
         let picture = renderer.render(&snapshot(2, &[1.0, 0.5], 0.01, &[1]));
         let pixels = 640.0 / 2.1;
         // (1 − r²/h²)² is at the threshold.
-        let part = (1.0 - f64::from(plane::THRESHOLD).sqrt()).sqrt();
-        let radius = part * f64::from(plane::REACH) * 0.1 * pixels;
+        let part = (1.0 - f64::from(flat::THRESHOLD).sqrt()).sqrt();
+        let radius = part * f64::from(flat::REACH) * 0.1 * pixels;
         // Half red light or more.
         let area = count(&picture, |p| p[0] > 0xB0) as f64;
         let expected = std::f64::consts::PI * f64::powi(radius, 2);

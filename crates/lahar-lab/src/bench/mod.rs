@@ -9,7 +9,7 @@
 //! that fails begins again from. As many sorts fall into it as it is long: none is left out, none counted twice.
 
 mod machine;
-mod report;
+mod table;
 
 use lahar::{Isa, PhaseTimes};
 use lahar_io::driver::{Driver, Event, FrameEnd, Schedule};
@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use lahar_scene::error::SceneError;
 use lahar_scene::scene::{Precision, Scene};
 pub use machine::{Machine, seconds};
-pub use report::{Report, growth};
+pub use table::{Report, growth};
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

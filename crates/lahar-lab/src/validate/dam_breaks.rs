@@ -2,7 +2,7 @@
 
 use super::Case;
 use super::measure::{at, line, mean, points, root_mean_square, shifted};
-use super::session::{Series, Session, Stop};
+use super::running::{Series, Session, Stop};
 
 pub(super) const CASES: &[Case] = &[
     Case {

@@ -4,7 +4,7 @@ use lahar::Field;
 
 use super::Case;
 use super::measure::{at, mean, order, table};
-use super::session::{Series, Session, Stop, field};
+use super::running::{Series, Session, Stop, field};
 
 pub(super) const CASES: &[Case] = &[
     Case {

@@ -6,7 +6,7 @@ use lahar::material::{
 use lahar::math::Matrix;
 
 use super::Case;
-use super::session::{Session, Stop};
+use super::running::{Session, Stop};
 
 pub(super) const CASES: &[Case] = &[Case {
     id: "K5",

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::session::Series;
+use super::running::Series;
 
 /// A table of reference numbers: its columns, in order. Lines that start with # tell its source, the
 /// first of the others names the columns.

@@ -5,7 +5,7 @@ use lahar::kernel::{BSpline, Cubic, Quadratic};
 use lahar::{Field, Simulate};
 
 use super::Case;
-use super::session::{Session, Stop, field};
+use super::running::{Session, Stop, field};
 
 pub(super) const CASES: &[Case] = &[
     Case {

@@ -12,8 +12,8 @@ mod flows;
 mod laws;
 mod measure;
 mod method;
-mod report;
-mod session;
+mod document;
+mod running;
 mod solids;
 mod tanks;
 mod waves;
@@ -22,8 +22,8 @@ use lahar::Isa;
 
 use crate::plot::Plot;
 use lahar_scene::error::SceneError;
-pub use report::{document, json, text};
-use session::{Session, Stop};
+pub use document::{document, json, text};
+use running::{Session, Stop};
 
 /// A case.
 pub struct Case {

@@ -4,7 +4,7 @@ use lahar::{Field, Simulate};
 
 use super::Case;
 use super::measure::{at, order, period, points, table};
-use super::session::{Series, Session, Stop, field};
+use super::running::{Series, Session, Stop, field};
 
 pub(super) const CASES: &[Case] = &[
     Case {

@@ -4,7 +4,7 @@ use lahar::{Field, Simulate};
 
 use super::Case;
 use super::measure::{mean, percentile, spread_a_cell, to_nearest};
-use super::session::{Running, Session, Stop, field};
+use super::running::{Running, Session, Stop, field};
 
 pub(super) const CASES: &[Case] = &[Case {
     id: "F4",

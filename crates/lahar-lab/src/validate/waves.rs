@@ -6,7 +6,7 @@ use lahar::Field;
 
 use super::Case;
 use super::measure::{line, order, period};
-use super::session::{Series, Session, Stop, field, mode};
+use super::running::{Series, Session, Stop, field, mode};
 
 pub(super) const CASES: &[Case] = &[
     Case {

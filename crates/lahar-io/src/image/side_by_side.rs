@@ -21,7 +21,7 @@ const STRIP_COLOUR: Colour = [0x20, 0x20, 0x20];
 
 /// One picture of several of one size, from left to right, each under its title; `None` if there are
 /// none, or their sizes differ.
-pub fn beside(pictures: &[(&str, &Picture)]) -> Option<Picture> {
+pub fn side_by_side(pictures: &[(&str, &Picture)]) -> Option<Picture> {
     let (_, first) = pictures.first()?;
     let (width, height) = (first.width, first.height);
     if pictures
@@ -100,7 +100,7 @@ mod tests {
     fn each_picture_stands_under_its_title() {
         let (a, b) = (plain(100), plain(200));
         // The second title is too long: it ends with its picture.
-        let whole = beside(&[("transfer", &a), ("a very long title, cut", &b)]).unwrap();
+        let whole = side_by_side(&[("transfer", &a), ("a very long title, cut", &b)]).unwrap();
         assert_eq!((whole.width, whole.height), (90 + GAP + 90, 10 + STRIP));
         let pixel = |x: u32, y: u32| whole.rgb[3 * (y * whole.width + x) as usize];
         assert_eq!(pixel(5, STRIP + 5), 100);
@@ -118,7 +118,7 @@ mod tests {
     fn pictures_of_different_sizes_are_refused() {
         let mut small = plain(0);
         (small.height, small.rgb) = (5, vec![0; 3 * 90 * 5]);
-        assert_eq!(beside(&[("a", &plain(0)), ("b", &small)]), None);
-        assert_eq!(beside(&[]), None);
+        assert_eq!(side_by_side(&[("a", &plain(0)), ("b", &small)]), None);
+        assert_eq!(side_by_side(&[]), None);
     }
 }
