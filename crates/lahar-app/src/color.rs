@@ -2,7 +2,7 @@
 
 use eframe::egui::Color32;
 use lahar::{Field, Snapshot};
-use lahar_io::image::{Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, body_colour};
+use lahar_io::image::{Color, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, body_color};
 
 use crate::scenes::{MaterialKind, SceneInfo, Swatch};
 
@@ -111,7 +111,7 @@ impl ColorBy {
     }
 
     /// The colors of its range, low to high, evenly spaced.
-    pub fn ramp(self) -> &'static [Colour] {
+    pub fn ramp(self) -> &'static [Color] {
         match self {
             Self::Material | Self::Body => &[],
             Self::Speed => &SPEED_RAMP,
@@ -275,10 +275,10 @@ pub fn colors(
     }
     let bodies = snapshot.get(Field::Body);
     if by == ColorBy::Body {
-        let opaque = |[r, g, b]: Colour| [r, g, b, 255];
+        let opaque = |[r, g, b]: Color| [r, g, b, 255];
         let of_body = |body: usize| match info.bodies.get(body) {
             Some((_, color)) => opaque(*color),
-            None => opaque(body_colour(body)),
+            None => opaque(body_color(body)),
         };
         return match bodies {
             Some(lahar::Data::U32(bodies)) => bodies.iter().map(|&b| of_body(b as usize)).collect(),

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use eframe::egui::Color32;
 use lahar::Snapshot;
-use lahar_io::image::{Colouring, Picture, Style};
+use lahar_io::image::{Coloring, Picture, Style};
 use lahar_io::output::Recording;
 use serde_json::Value;
 
@@ -61,13 +61,13 @@ impl Painter {
             Offscreen::new([style.width, style.height], style.samples).map_err(PaintError)?;
         let scenery = Scenery::new(&info, Some(first));
         let aspect = f64::from(style.width) / f64::from(style.height);
-        let (by, ends) = match style.colouring {
-            Colouring::Material => (ColorBy::Material, (0.0, 1.0)),
-            Colouring::Body => (ColorBy::Body, (0.0, 1.0)),
-            Colouring::Speed(high) => (ColorBy::Speed, (0.0, high)),
-            Colouring::Pressure(low, high) => (ColorBy::Pressure, (low, high)),
-            Colouring::Density(low, high) => (ColorBy::Density, (low, high)),
-            Colouring::Jacobian(low, high) => (ColorBy::Jacobian, (low, high)),
+        let (by, ends) = match style.coloring {
+            Coloring::Material => (ColorBy::Material, (0.0, 1.0)),
+            Coloring::Body => (ColorBy::Body, (0.0, 1.0)),
+            Coloring::Speed(high) => (ColorBy::Speed, (0.0, high)),
+            Coloring::Pressure(low, high) => (ColorBy::Pressure, (low, high)),
+            Coloring::Density(low, high) => (ColorBy::Density, (low, high)),
+            Coloring::Jacobian(low, high) => (ColorBy::Jacobian, (low, high)),
         };
         Ok(Self {
             offscreen,

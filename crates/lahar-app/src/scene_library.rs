@@ -7,7 +7,7 @@ use std::path::Path;
 
 use lahar::{Field, Isa};
 use lahar_io::driver::Driver;
-use lahar_io::image::{Picture, Renderer, Scenery, Style, body_colour};
+use lahar_io::image::{Picture, Renderer, Scenery, Style, body_color};
 use lahar_io::output::Recording;
 use lahar_scene::builtin;
 use lahar_scene::scene::{Controls, Scene, colliders_of};
@@ -100,7 +100,7 @@ impl SceneSource for SceneLibrary {
         };
         let simulation = driver.simulation();
         let mut scenery = Scenery::of(simulation, &[]).with_colliders(&info.colliders);
-        scenery.colours = palette(&info.swatches)
+        scenery.colors = palette(&info.swatches)
             .iter()
             .map(|color| [color.r(), color.g(), color.b()])
             .collect();
@@ -267,7 +267,7 @@ fn bodies(scene: &Value) -> Vec<(String, [u8; 3])> {
             let own = color(&table["color"]);
             (
                 body_name(table, number),
-                own.unwrap_or_else(|| body_colour(number)),
+                own.unwrap_or_else(|| body_color(number)),
             )
         })
         .collect()

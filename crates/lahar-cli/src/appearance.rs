@@ -1,6 +1,6 @@
 //! How a scene wants to be drawn: its camera and colours, for pictures made by the processor.
 
-use lahar_io::image::{Camera, Colouring, Renderer, Scenery, Style};
+use lahar_io::image::{Camera, Coloring, Renderer, Scenery, Style};
 use lahar_scene::scene::Scene;
 
 /// Width of a film \[pixels\]: a film of all frames is to stay a few megabytes.
@@ -14,23 +14,23 @@ pub(crate) fn film_size([width, height]: [u32; 2]) -> [u32; 2] {
 }
 
 /// What colours mean in pictures of `scene`.
-pub(crate) fn colouring(scene: &Scene, scenery: &Scenery) -> Colouring {
+pub(crate) fn coloring(scene: &Scene, scenery: &Scenery) -> Coloring {
     match scene.camera.color_by.as_str() {
-        "body" => Colouring::Body,
-        "speed" => Colouring::Speed(scenery.speed.max(1e-3)),
-        "pressure" => Colouring::Pressure(0.0, pressure_scale(scene, scenery)),
+        "body" => Coloring::Body,
+        "speed" => Coloring::Speed(scenery.speed.max(1e-3)),
+        "pressure" => Coloring::Pressure(0.0, pressure_scale(scene, scenery)),
         "density" => {
             let squeeze = squeeze(scene, scenery);
             let densities = || scene.materials.iter().map(|m| m.density);
             let least = densities().fold(f64::INFINITY, f64::min);
             let most = densities().fold(0.0, f64::max);
-            Colouring::Density(least * (1.0 - squeeze), most * (1.0 + squeeze))
+            Coloring::Density(least * (1.0 - squeeze), most * (1.0 + squeeze))
         }
         "J" => {
             let squeeze = squeeze(scene, scenery);
-            Colouring::Jacobian(1.0 - squeeze, 1.0 + squeeze)
+            Coloring::Jacobian(1.0 - squeeze, 1.0 + squeeze)
         }
-        _ => Colouring::Material,
+        _ => Coloring::Material,
     }
 }
 
@@ -40,12 +40,12 @@ pub(crate) fn renderer(scene: &Scene, scenery: &Scenery, [width, height]: [u32; 
     let style = Style {
         width,
         height,
-        colouring: colouring(scene, scenery),
+        coloring: coloring(scene, scenery),
         ..Style::default()
     };
     let mut scenery = scenery.clone();
     scenery.background = camera.background;
-    for (colour, material) in scenery.colours.iter_mut().zip(&scene.materials) {
+    for (colour, material) in scenery.colors.iter_mut().zip(&scene.materials) {
         *colour = material.color.unwrap_or(*colour);
     }
     scenery.bodies = scene.bodies.iter().map(|body| body.color).collect();

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use lahar::Isa;
 use lahar_io::files::{make_folder, write_file};
-use lahar_lab::bench::{self, BenchError, Case, Machine, Options, Report};
+use lahar_lab::bench::{self, BenchError, BenchReport, Case, Machine, Options};
 use serde_json::json;
 
 use crate::error::CliError;
@@ -26,7 +26,7 @@ pub(crate) fn bench(args: &args::Bench) -> Result<ExitCode, CliError> {
         Some(counts) => counts.iter().copied().map(Some).collect(),
         None => vec![args.particles],
     };
-    let mut report = Report {
+    let mut report = BenchReport {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         machine: Machine::here(),
         results: Vec::new(),
@@ -63,7 +63,7 @@ pub(crate) fn bench(args: &args::Bench) -> Result<ExitCode, CliError> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn measure(case: &Case, options: &Options, threads: usize) -> Result<bench::Measured, CliError> {
+fn measure(case: &Case, options: &Options, threads: usize) -> Result<bench::Measurement, CliError> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = pool
         .map_err(|error| CliError::Machine(format!("cannot start {threads} threads: {error}")))?;
@@ -108,7 +108,7 @@ fn wanted(args: &args::Bench) -> Result<Vec<&'static Case>, CliError> {
 }
 
 /// A baseline.
-fn read(path: &Path) -> Result<Report, CliError> {
+fn read(path: &Path) -> Result<BenchReport, CliError> {
     let wrong = |what: String| CliError::Usage(format!("{}: {what}", path.display()));
     let text = fs::read_to_string(path).map_err(|error| wrong(format!("cannot read: {error}")))?;
     serde_json::from_str(&text).map_err(|error| {
@@ -119,7 +119,7 @@ fn read(path: &Path) -> Result<Report, CliError> {
 }
 
 /// Draws the plots into `folder`; returns their paths.
-fn draw(report: &Report, folder: &Path) -> Result<Vec<PathBuf>, CliError> {
+fn draw(report: &BenchReport, folder: &Path) -> Result<Vec<PathBuf>, CliError> {
     make_folder(folder)?;
     let plots = bench::growth(&report.results).into_iter();
     plots

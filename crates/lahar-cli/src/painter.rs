@@ -65,7 +65,7 @@ impl Painter {
         let style = lahar_io::image::Style {
             width,
             height,
-            colouring: appearance::colouring(subject.scene, &scenery),
+            coloring: appearance::coloring(subject.scene, &scenery),
             ..lahar_io::image::Style::default()
         };
         let painter = lahar_app::Painter::new(

@@ -6,7 +6,7 @@ use lahar::{Field, Isa, particles};
 use lahar_io::checkpoint::Start;
 use lahar_io::export::{FORMATS, Format};
 use lahar_io::image::{self, Scenery};
-use lahar_io::output::{Film, Pictures, RunFolder, film_pace};
+use lahar_io::output::{FilmPlan, PicturePlan, RunFolder, film_pace};
 use lahar_scene::scene::Scene;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
@@ -246,17 +246,17 @@ impl Plan {
     }
 
     /// Pictures, if wanted.
-    pub(crate) fn pictures(&self, scenery: &Scenery) -> Option<Pictures> {
+    pub(crate) fn pictures(&self, scenery: &Scenery) -> Option<PicturePlan> {
         let [width, height] = self.scene.output.picture_size;
-        (self.outputs.formats.png > 0).then(|| Pictures {
+        (self.outputs.formats.png > 0).then(|| PicturePlan {
             renderer: appearance::renderer(&self.scene, scenery, [width, height]),
             every: self.outputs.formats.png,
         })
     }
 
     /// A film, if wanted.
-    pub(crate) fn film(&self, scenery: &Scenery) -> Option<Film> {
-        self.outputs.formats.gif.then(|| Film {
+    pub(crate) fn film(&self, scenery: &Scenery) -> Option<FilmPlan> {
+        self.outputs.formats.gif.then(|| FilmPlan {
             renderer: appearance::renderer(
                 &self.scene,
                 scenery,

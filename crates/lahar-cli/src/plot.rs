@@ -20,7 +20,7 @@ struct Figure {
     columns: &'static [(&'static [&'static str], &'static str)],
 }
 
-/// Sums of columns, in joules, metres and so on; in 2D per metre of depth.
+/// Checksums of columns, in joules, metres and so on; in 2D per metre of depth.
 const FIGURES: &[Figure] = &[
     Figure {
         file: "energy",

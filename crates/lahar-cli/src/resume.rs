@@ -4,7 +4,7 @@ use std::fs;
 use std::process::ExitCode;
 
 use lahar::Checkpoint;
-use lahar_io::checkpoint::{Header, Newest, Start, Store, Unusable};
+use lahar_io::checkpoint::{Header, Newest, Start, StartError, Store};
 use lahar_io::output::{Record, RunFolder, Status};
 use lahar_scene::scene::Scene;
 use serde_json::json;
@@ -29,8 +29,8 @@ pub(crate) fn resume(args: &args::Resume) -> Result<ExitCode, CliError> {
         )));
     }
     let scene = start.scene(&checkpoints).map_err(|error| match error {
-        Unusable::File(error) => CliError::Output(error),
-        Unusable::Scene(error) => CliError::Scene(error),
+        StartError::File(error) => CliError::Output(error),
+        StartError::Scene(error) => CliError::Scene(error),
     })?;
     let finished = finished_record(&folder, start.frames);
     let last_frame = last_frame(args, &scene).unwrap_or(start.frames);

@@ -9,7 +9,7 @@ use lahar::{Checkpoint, Retry, Simulate};
 use lahar_io::checkpoint::{self, Header, Start, Store};
 use lahar_io::driver::Driver;
 use lahar_io::image::Scenery;
-use lahar_io::output::{self, PhaseSeconds, Record, RunFolder, Status, Writer, Written};
+use lahar_io::output::{self, OutputCounts, PhaseSeconds, Record, RunFolder, Status, Writer};
 
 use crate::error::{CliError, INTERRUPTED};
 use crate::frame_loop::{FrameLoop, RunError};
@@ -130,7 +130,7 @@ fn writer(
     driver: &Driver,
     resumed: Option<&checkpoint::Progress>,
 ) -> Result<Writer, RunError> {
-    let written = output::Plan {
+    let written = output::OutputPlan {
         folder: folder.clone(),
         dimension: driver.simulation().dimension(),
         formats: plan.outputs.formats.particles.clone(),
@@ -180,7 +180,7 @@ fn record_progress(record: &mut Record, progress: checkpoint::Progress) {
 fn record_outcome(
     record: &mut Record,
     simulation: &dyn Simulate,
-    outcome: &Result<(End, Written), RunError>,
+    outcome: &Result<(End, OutputCounts), RunError>,
 ) {
     record.status = match outcome {
         Ok((End::Interrupted | End::Deadline, _)) => Status::Interrupted,

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use lahar_io::checkpoint::Progress;
-use lahar_io::output::{Record, RunFolder, Written};
+use lahar_io::output::{OutputCounts, Record, RunFolder};
 use serde_json::{Value, json};
 
 use crate::error::CliError;
@@ -50,7 +50,7 @@ pub(crate) fn print(
     record: &Record,
     folder: &RunFolder,
     end: End,
-    written: Written,
+    written: OutputCounts,
     as_json: bool,
 ) {
     if as_json {

@@ -8,7 +8,7 @@ use lahar::particles::FIELDS;
 use lahar::{Checkpoint, Isa, Simulate};
 use lahar_scene::scene::Scene;
 
-use crate::checkpoint::{self, Sums};
+use crate::checkpoint::{self, Checksums};
 
 /// A checkpoint's file. Its sums are taken for right, and its length: else nearly all changes would end there.
 /// What can be read goes to a simulation.
@@ -19,7 +19,7 @@ pub fn checkpoint(bytes: &[u8]) {
     if let Some(told) = bytes.get_mut(checkpoint::LENGTH_AT) {
         told.copy_from_slice(&length);
     }
-    let read = checkpoint::read_with(&*bytes, bytes.len() as u64, Sums::Ignored);
+    let read = checkpoint::read_with(&*bytes, bytes.len() as u64, Checksums::Ignored);
     if let Ok((_, checkpoint)) = read {
         go_on_from(checkpoint);
     }

@@ -1,6 +1,6 @@
 //! Surfaces around particles, by splashsurf: triangle meshes that are closed, of the volume that the particles fill.
 //!
-//! splashsurf sums a kernel over particles, each weighted by the volume that its own neighbourhood gives it,
+//! splashsurf sums a kernel over particles, each weighted by the volume that its own neighborhood gives it,
 //!
 //! ```text
 //! c(x) = Σ_p W(x − x_p) / Σ_q W(x_p − x_q)
@@ -21,7 +21,7 @@ use crate::export::Triangles;
 /// Radius of the kernel, in spacings of particles: smaller ones leave holes between scattered particles.
 const REACH: f64 = 2.5;
 
-/// How far a pass of smoothing moves vertices towards the middle of their neighbours, and the next one back, a little
+/// How far a pass of smoothing moves vertices towards the middle of their neighbors, and the next one back, a little
 /// farther so that no wave grows: what is long keeps its size (G. Taubin, "A signal processing approach to fair surface
 /// design", SIGGRAPH 1995).
 const SMOOTH: [f32; 2] = [0.5, -0.53];
@@ -145,11 +145,11 @@ fn smooth(mesh: &mut TriMesh3d<f32>, passes: u32) {
     if passes == 0 {
         return;
     }
-    let neighbours = mesh.vertex_vertex_connectivity();
+    let neighbors = mesh.vertex_vertex_connectivity();
     let weights = vec![1.0; mesh.vertices.len()];
     for _ in 0..passes {
         for amount in SMOOTH {
-            par_laplacian_smoothing_inplace(mesh, &neighbours, 1, amount, &weights);
+            par_laplacian_smoothing_inplace(mesh, &neighbors, 1, amount, &weights);
         }
     }
 }

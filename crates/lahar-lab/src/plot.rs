@@ -13,7 +13,7 @@ pub struct Plot {
     pub x_label: String,
     /// Along the left side, with its unit.
     pub y_label: String,
-    /// Drawn in this order, each in a colour of its own.
+    /// Drawn in this order, each in a color of its own.
     pub lines: Vec<Line>,
 }
 
@@ -43,8 +43,8 @@ const SIZE: (u32, u32) = (760, 420);
 
 const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
 
-/// Told apart with every kind of eye (P. Tol, "Colour schemes", 2021: bright, without yellow).
-const COLOURS: [RGBColor; 6] = [
+/// Told apart with every kind of eye (P. Tol, "Color schemes", 2021: bright, without yellow).
+const COLORS: [RGBColor; 6] = [
     RGBColor(0x44, 0x77, 0xAA),
     RGBColor(0xEE, 0x66, 0x77),
     RGBColor(0x22, 0x88, 0x33),
@@ -120,8 +120,8 @@ impl Plot {
             .y_label_formatter(&|y| number(*y))
             .draw()
             .map_err(wrong)?;
-        for (line, colour) in self.lines.iter().zip(COLOURS.iter().cycle()) {
-            let style = colour.stroke_width(2);
+        for (line, color) in self.lines.iter().zip(COLORS.iter().cycle()) {
+            let style = color.stroke_width(2);
             for (index, piece) in line.points.split(|p| !finite(&p)).enumerate() {
                 let drawn = chart
                     .draw_series(LineSeries::new(piece.iter().copied(), style))

@@ -35,7 +35,7 @@ const TAIL: u64 = 4;
 /// Arrays begin at multiples of this.
 const ALIGN: u64 = 8;
 /// Bytes that are converted at a time.
-const PIECE: usize = 1 << 16;
+const CHUNK: usize = 1 << 16;
 
 /// What a checkpoint says of itself besides its arrays.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -58,15 +58,15 @@ pub struct Header {
 struct Contents {
     #[serde(flatten)]
     header: Header,
-    arrays: Vec<Line>,
+    arrays: Vec<ArrayEntry>,
 }
 
 /// An array in the contents.
 #[derive(Serialize, Deserialize)]
-struct Line {
+struct ArrayEntry {
     name: String,
     #[serde(rename = "type")]
-    kind: Kind,
+    kind: NumberType,
     shape: Vec<usize>,
     /// From the start of the file.
     at: u64,
@@ -75,7 +75,7 @@ struct Line {
 
 #[derive(Clone, Copy, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-enum Kind {
+enum NumberType {
     F32,
     F64,
     U32,
@@ -83,7 +83,7 @@ enum Kind {
     U64,
 }
 
-impl Kind {
+impl NumberType {
     fn of(values: &Values) -> Self {
         match values {
             Values::F32(_) => Self::F32,
@@ -103,18 +103,18 @@ impl Kind {
     }
 }
 
-/// Hands the little-endian bytes of `values` to `to`, a piece at a time.
-fn pieces(values: &Values, mut to: impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
+/// Hands the little-endian bytes of `values` to `to`, a chunk at a time.
+fn each_chunk(values: &Values, mut to: impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
     fn each<V: Copy, const N: usize>(
         values: &[V],
         bytes: impl Fn(V) -> [u8; N],
         to: &mut impl FnMut(&[u8]) -> io::Result<()>,
     ) -> io::Result<()> {
-        let mut piece = Vec::with_capacity(PIECE);
-        for values in values.chunks(PIECE / N) {
-            piece.clear();
-            piece.extend(values.iter().flat_map(|value| bytes(*value)));
-            to(&piece)?;
+        let mut chunk = Vec::with_capacity(CHUNK);
+        for values in values.chunks(CHUNK / N) {
+            chunk.clear();
+            chunk.extend(values.iter().flat_map(|value| bytes(*value)));
+            to(&chunk)?;
         }
         Ok(())
     }
@@ -129,8 +129,8 @@ fn pieces(values: &Values, mut to: impl FnMut(&[u8]) -> io::Result<()>) -> io::R
 
 fn checksum(values: &Values) -> u32 {
     let mut sum = crc32fast::Hasher::new();
-    let summed = pieces(values, |piece| {
-        sum.update(piece);
+    let summed = each_chunk(values, |chunk| {
+        sum.update(chunk);
         Ok(())
     });
     debug_assert!(summed.is_ok(), "sums do not fail");
@@ -138,13 +138,13 @@ fn checksum(values: &Values) -> u32 {
 }
 
 /// Passes on what is written, and sums it up.
-struct Summing<W> {
+struct SummingWriter<W> {
     inner: W,
     sum: crc32fast::Hasher,
     written: u64,
 }
 
-impl<W: Write> Summing<W> {
+impl<W: Write> SummingWriter<W> {
     fn put(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.sum.update(bytes);
         self.written += bytes.len() as u64;
@@ -163,9 +163,9 @@ impl<W: Write> Summing<W> {
 /// # Errors
 /// If `writer` fails.
 pub fn write<W: Write>(writer: W, header: &Header, checkpoint: &Checkpoint) -> io::Result<W> {
-    let line = |array: &Array| Line {
+    let line = |array: &Array| ArrayEntry {
         name: array.name.clone(),
-        kind: Kind::of(&array.values),
+        kind: NumberType::of(&array.values),
         shape: array.shape.clone(),
         at: u64::MAX,
         crc32: checksum(&array.values),
@@ -186,7 +186,7 @@ pub fn write<W: Write>(writer: W, header: &Header, checkpoint: &Checkpoint) -> i
     let mut text = serde_json::to_string(&contents)?;
     text.extend(core::iter::repeat_n(' ', wide as usize - text.len()));
 
-    let mut out = Summing {
+    let mut out = SummingWriter {
         inner: writer,
         sum: crc32fast::Hasher::new(),
         written: 0,
@@ -202,7 +202,7 @@ pub fn write<W: Write>(writer: W, header: &Header, checkpoint: &Checkpoint) -> i
     out.pad()?;
     for (line, array) in contents.arrays.iter().zip(&checkpoint.arrays) {
         debug_assert_eq!(line.at, out.written);
-        pieces(&array.values, |piece| out.put(piece))?;
+        each_chunk(&array.values, |chunk| out.put(chunk))?;
         out.pad()?;
     }
     let sum = out.sum.clone().finalize();
@@ -211,7 +211,7 @@ pub fn write<W: Write>(writer: W, header: &Header, checkpoint: &Checkpoint) -> i
 }
 
 /// Takes bytes off a reader that is `left` long, and sums them up.
-struct Counted<R> {
+struct CheckedReader<R> {
     inner: R,
     sum: crc32fast::Hasher,
     read: u64,
@@ -220,7 +220,7 @@ struct Counted<R> {
 
 const CUT: &str = "it is cut short";
 
-impl<R: Read> Counted<R> {
+impl<R: Read> CheckedReader<R> {
     fn bytes(&mut self, count: u64) -> Result<Vec<u8>, String> {
         // Before anything is allocated.
         if count > self.length - self.read {
@@ -243,7 +243,7 @@ impl<R: Read> Counted<R> {
         bytes.try_into().map_err(|_| CUT.to_owned())
     }
 
-    fn values(&mut self, kind: Kind, count: u64) -> Result<(Values, u32), String> {
+    fn values(&mut self, kind: NumberType, count: u64) -> Result<(Values, u32), String> {
         let length = count.checked_mul(kind.size()).ok_or(CUT)?;
         let bytes = self.bytes(length)?;
         let sum = crc32fast::hash(&bytes);
@@ -251,11 +251,11 @@ impl<R: Read> Counted<R> {
             bytes.as_chunks().0.iter().map(|b| value(*b)).collect()
         }
         let values = match kind {
-            Kind::F32 => Values::F32(each(&bytes, f32::from_le_bytes)),
-            Kind::F64 => Values::F64(each(&bytes, f64::from_le_bytes)),
-            Kind::U32 => Values::U32(each(&bytes, u32::from_le_bytes)),
-            Kind::I32 => Values::I32(each(&bytes, i32::from_le_bytes)),
-            Kind::U64 => Values::U64(each(&bytes, u64::from_le_bytes)),
+            NumberType::F32 => Values::F32(each(&bytes, f32::from_le_bytes)),
+            NumberType::F64 => Values::F64(each(&bytes, f64::from_le_bytes)),
+            NumberType::U32 => Values::U32(each(&bytes, u32::from_le_bytes)),
+            NumberType::I32 => Values::I32(each(&bytes, i32::from_le_bytes)),
+            NumberType::U64 => Values::U64(each(&bytes, u64::from_le_bytes)),
         };
         Ok((values, sum))
     }
@@ -263,7 +263,7 @@ impl<R: Read> Counted<R> {
 
 /// What a reader makes of a file's sums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Sums {
+pub(crate) enum Checksums {
     /// They must be right.
     Checked,
     /// As if whoever altered the file had set them right, too.
@@ -275,7 +275,7 @@ pub(crate) enum Sums {
 /// # Errors
 /// What is wrong with it, as the rest of a sentence about it: it is cut, altered, or of another version.
 pub fn read<R: Read>(reader: R, length: u64) -> Result<(Header, Checkpoint), String> {
-    read_with(reader, length, Sums::Checked)
+    read_with(reader, length, Checksums::Checked)
 }
 
 /// [`read`], with or without a look at its sums.
@@ -285,10 +285,10 @@ pub fn read<R: Read>(reader: R, length: u64) -> Result<(Header, Checkpoint), Str
 pub(crate) fn read_with<R: Read>(
     reader: R,
     length: u64,
-    sums: Sums,
+    sums: Checksums,
 ) -> Result<(Header, Checkpoint), String> {
-    let is_right = |is: u32, should_be: u32| is == should_be || sums == Sums::Ignored;
-    let mut bytes = Counted {
+    let is_right = |is: u32, should_be: u32| is == should_be || sums == Checksums::Ignored;
+    let mut bytes = CheckedReader {
         inner: reader,
         sum: crc32fast::Hasher::new(),
         read: 0,
@@ -432,7 +432,7 @@ mod tests {
         );
     }
 
-    /// Sums can be made to fit; sizes beyond the file must still not be believed.
+    /// Checksums can be made to fit; sizes beyond the file must still not be believed.
     #[test]
     fn sizes_that_lie_allocate_nothing() {
         let (header, checkpoint) = example();

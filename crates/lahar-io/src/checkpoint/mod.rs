@@ -14,8 +14,8 @@ mod progress;
 mod start;
 mod store;
 
+pub(crate) use format::{Checksums, LENGTH_AT, read_with};
 pub use format::{Header, read, write};
-pub(crate) use format::{LENGTH_AT, Sums, read_with};
-pub use progress::{OutputState, PhaseSeconds, Progress, Written};
-pub use start::{Start, Unusable};
+pub use progress::{OutputCounts, OutputState, PhaseSeconds, Progress};
+pub use start::{Start, StartError};
 pub use store::{Newest, Store};

@@ -33,7 +33,7 @@ pub struct Progress {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct OutputState {
     /// Counts of the files written.
-    pub written: Written,
+    pub written: OutputCounts,
     /// Length of `diagnostics.csv`.
     pub diagnostics: Option<Length>,
     /// Lengths of `probes/NAME.csv`, in the order of the scene.
@@ -80,7 +80,7 @@ impl OutputState {
 
 /// Counts of what a run has written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Written {
+pub struct OutputCounts {
     /// Frames, with or without files.
     pub frames: u64,
     /// Frames with files of particles.

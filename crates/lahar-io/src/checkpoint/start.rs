@@ -119,11 +119,11 @@ impl Start {
     ///
     /// # Errors
     /// A copy is not what it was; or this program reads the scene differently.
-    pub fn scene(&self, folder: &Path) -> Result<Scene, Unusable> {
+    pub fn scene(&self, folder: &Path) -> Result<Scene, StartError> {
         let files = folder.join(FILES);
         for kept in &self.files {
             let path = confined(&files, &kept.copy)
-                .map_err(|what| Unusable::File(OutputError::usage(&files, what)))?;
+                .map_err(|what| StartError::File(OutputError::usage(&files, what)))?;
             let mut sum = Summed::default();
             let read = File::open(&path).and_then(|mut file| io::copy(&mut file, &mut sum));
             let what = match read {
@@ -133,7 +133,7 @@ impl Start {
                 }
                 Ok(_) => continue,
             };
-            return Err(Unusable::File(OutputError::usage(&path, what)));
+            return Err(StartError::File(OutputError::usage(&path, what)));
         }
         let limits = Limits::default();
         Scene::kept(
@@ -143,13 +143,13 @@ impl Start {
             &limits,
             (&self.files, &files),
         )
-        .map_err(|error| Unusable::Scene(Box::new(error)))
+        .map_err(|error| StartError::Scene(Box::new(error)))
     }
 }
 
 /// Why a scene that was kept cannot be read again.
 #[derive(Debug)]
-pub enum Unusable {
+pub enum StartError {
     /// A copy was damaged.
     File(OutputError),
     /// The scene is wrong for this program.

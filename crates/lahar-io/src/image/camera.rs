@@ -87,13 +87,13 @@ impl Camera {
     ) -> Self {
         let direction = unit(direction);
         let (min, max) = (min.map(|x| x as f32), max.map(|x| x as f32));
-        let centre: V = core::array::from_fn(|i| 0.5 * (min[i] + max[i]));
+        let center: V = core::array::from_fn(|i| 0.5 * (min[i] + max[i]));
         let extent = dot(sub(max, min), sub(max, min)).sqrt();
         let mut up_vector = [0.0; 3];
         up_vector[up] = 1.0;
         let mut camera = Self {
-            eye: centre,
-            target: centre,
+            eye: center,
+            target: center,
             up: up_vector,
             angle,
         };

@@ -1,21 +1,21 @@
-//! Particles as the painters take them: places, sizes, colours.
+//! Particles as the painters take them: places, sizes, colors.
 
-use super::palette::{self, Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along};
-use super::{Colouring, Scenery};
+use super::palette::{self, Color, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along};
+use super::{Coloring, Scenery};
 use lahar::{Field, Snapshot};
 
 /// Particles as the painters take them.
-pub(super) struct Drawn {
+pub(super) struct DrawableParticles {
     /// Where \[m\]; 0 beyond the dimension.
     pub(super) position: Vec<[f32; 3]>,
     /// Edge of the cube (square) that one fills at rest \[m\].
     pub(super) size: Vec<f32>,
     /// In linear light.
-    pub(super) colour: Vec<[f32; 3]>,
+    pub(super) color: Vec<[f32; 3]>,
 }
 
-impl Drawn {
-    pub(super) fn from(snapshot: &Snapshot, scenery: &Scenery, colouring: Colouring) -> Self {
+impl DrawableParticles {
+    pub(super) fn from(snapshot: &Snapshot, scenery: &Scenery, coloring: Coloring) -> Self {
         let d = snapshot.dimension;
         let n = snapshot.count;
         let numbers = |field: Field| snapshot.get(field).map(lahar::Data::to_f32);
@@ -49,25 +49,25 @@ impl Drawn {
         let index = |field: Field| numbers(field).unwrap_or_else(|| vec![0.0; n]);
         // Dust has none: as if at rest.
         let jacobian = || numbers(Field::Jacobian).unwrap_or_else(|| vec![1.0; n]);
-        let shades = |colour| {
+        let shades = |color| {
             [
-                palette::linear(colour),
-                palette::linear(palette::bright(colour)),
+                palette::linear(color),
+                palette::linear(palette::bright(color)),
             ]
         };
-        let colours: Vec<[[f32; 3]; 2]> = scenery.colours.iter().copied().map(shades).collect();
+        let colors: Vec<[[f32; 3]; 2]> = scenery.colors.iter().copied().map(shades).collect();
         let own: Vec<Option<[[f32; 3]; 2]>> = scenery
             .bodies
             .iter()
-            .map(|colour| colour.map(shades))
+            .map(|color| color.map(shades))
             .collect();
         let of_body = |body: f32| own.get(body as usize).copied().flatten();
-        let of_index = |i: f32| colours[i as usize % colours.len().max(1)];
-        let colour = if colours.is_empty() {
+        let of_index = |i: f32| colors[i as usize % colors.len().max(1)];
+        let color = if colors.is_empty() {
             vec![[1.0; 3]; n]
         } else {
-            match colouring {
-                Colouring::Material => {
+            match coloring {
+                Coloring::Material => {
                     let scale = if scenery.speed > 0.0 {
                         1.0 / scenery.speed as f32
                     } else {
@@ -85,36 +85,36 @@ impl Drawn {
                         })
                         .collect()
                 }
-                Colouring::Body => index(Field::Body)
+                Coloring::Body => index(Field::Body)
                     .iter()
                     .map(|&body| {
-                        let other = palette::body_colour(body as usize);
+                        let other = palette::body_color(body as usize);
                         of_body(body).map_or_else(|| palette::linear(other), |[base, _]| base)
                     })
                     .collect(),
-                Colouring::Speed(largest) => on_scale(&SPEED_RAMP, &speed, 0.0, largest),
-                Colouring::Pressure(low, high) => {
+                Coloring::Speed(largest) => on_scale(&SPEED_RAMP, &speed, 0.0, largest),
+                Coloring::Pressure(low, high) => {
                     let pressure = index(Field::Pressure);
                     on_scale(&PRESSURE_RAMP, &pressure, low, high)
                 }
-                Colouring::Density(low, high) => {
+                Coloring::Density(low, high) => {
                     let (mass, volume) = (index(Field::Mass), index(Field::Volume0));
                     let each = mass.iter().zip(&volume).zip(jacobian());
                     let density: Vec<f32> = each.map(|((m, v), j)| m / (v * j)).collect();
                     on_scale(&REST_RAMP, &density, low, high)
                 }
-                Colouring::Jacobian(low, high) => on_scale(&REST_RAMP, &jacobian(), low, high),
+                Coloring::Jacobian(low, high) => on_scale(&REST_RAMP, &jacobian(), low, high),
             }
         };
         Self {
             position,
             size,
-            colour,
+            color,
         }
     }
 }
 
-fn on_scale(ramp: &[Colour], values: &[f32], low: f64, high: f64) -> Vec<[f32; 3]> {
+fn on_scale(ramp: &[Color], values: &[f32], low: f64, high: f64) -> Vec<[f32; 3]> {
     let at = |value: f32| (f64::from(value) - low) / (high - low);
     values
         .iter()

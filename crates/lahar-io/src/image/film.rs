@@ -1,7 +1,7 @@
 //! A GIF from pictures, all in one palette, so that nothing flickers.
 //!
 //! A GIF's palette stands before its first frame, but a good one needs all of them. So pictures are kept, packed,
-//! while colours are counted; at the end the palette is cut from the counts and the frames are written, each only
+//! while colors are counted; at the end the palette is cut from the counts and the frames are written, each only
 //! where it differs from the one before.
 
 use std::io::{self, Read, Write};
@@ -12,14 +12,14 @@ use flate2::read::ZlibDecoder;
 use flate2::write::ZlibEncoder;
 
 use super::Picture;
-use super::palette::Colour;
+use super::palette::Color;
 use crate::files::{Durability, write_whole_io};
 
-/// Bits a channel by which colours are told apart while counting.
+/// Bits a channel by which colors are told apart while counting.
 const BITS: u32 = 5;
 
-/// Colours of a palette; one more is kept for "as before".
-const COLOURS: usize = 255;
+/// Colors of a palette; one more is kept for "as before".
+const COLORS: usize = 255;
 
 /// Pictures of one size on their way to a GIF.
 pub struct Film {
@@ -28,7 +28,7 @@ pub struct Film {
     rate: f64,
     /// Packed pictures.
     frames: Vec<Vec<u8>>,
-    /// By the leading bits of a colour: pixels, and the sum of their channels.
+    /// By the leading bits of a color: pixels, and the sum of their channels.
     counts: Vec<(u64, [u64; 3])>,
 }
 
@@ -173,7 +173,7 @@ impl Film {
 }
 
 /// The palette's index for "as in the frame before".
-const AS_BEFORE: u8 = COLOURS as u8;
+const AS_BEFORE: u8 = COLORS as u8;
 
 /// The smallest rectangle that differs, unchanged pixels in it left out.
 fn changed(shown: &[u8], new: &[u8], width: u16, height: u16) -> gif::Frame<'static> {
@@ -225,8 +225,8 @@ fn changed(shown: &[u8], new: &[u8], width: u16, height: u16) -> gif::Frame<'sta
     }
 }
 
-fn bin(colour: Colour) -> usize {
-    let part = |i: usize| usize::from(colour[i] >> (8 - BITS));
+fn bin(color: Color) -> usize {
+    let part = |i: usize| usize::from(color[i] >> (8 - BITS));
     part(0) << (2 * BITS) | part(1) << BITS | part(2)
 }
 
@@ -234,18 +234,18 @@ fn bin(colour: Colour) -> usize {
 #[derive(Clone, Copy)]
 struct Counted {
     bin: usize,
-    colour: [f64; 3],
+    color: [f64; 3],
     weight: f64,
 }
 
 struct Palette {
-    colours: Vec<Colour>,
+    colors: Vec<Color>,
     /// The palette's index by bin.
     nearest: Vec<u8>,
 }
 
 impl Palette {
-    /// Median cut: the group of colours with the largest spread is halved along its longest side, until there are
+    /// Median cut: the group of colors with the largest spread is halved along its longest side, until there are
     /// enough.
     fn cut(counts: &[(u64, [u64; 3])]) -> Self {
         let mut all: Vec<Counted> = counts
@@ -254,13 +254,13 @@ impl Palette {
             .filter(|(_, (count, _))| *count > 0)
             .map(|(bin, (count, sum))| Counted {
                 bin,
-                colour: sum.map(|sum| sum as f64 / *count as f64),
+                color: sum.map(|sum| sum as f64 / *count as f64),
                 // Small areas count for more than their share: edges and highlights are few but seen.
                 weight: (*count as f64).sqrt(),
             })
             .collect();
         let mut groups: Vec<(usize, usize)> = vec![(0, all.len())];
-        while groups.len() < COLOURS {
+        while groups.len() < COLORS {
             let Some((which, axis, spread)) = groups
                 .iter()
                 .enumerate()
@@ -278,54 +278,54 @@ impl Palette {
             let (start, end) = groups[which];
             let group = &mut all[start..end];
             group.sort_by(|a, b| {
-                a.colour[axis]
-                    .total_cmp(&b.colour[axis])
+                a.color[axis]
+                    .total_cmp(&b.color[axis])
                     .then(a.bin.cmp(&b.bin))
             });
             let mean = mean(group)[axis];
             let middle = group
                 .iter()
-                .position(|c| c.colour[axis] > mean)
+                .position(|c| c.color[axis] > mean)
                 .unwrap_or(1)
                 .max(1);
             groups[which] = (start, start + middle);
             groups.push((start + middle, end));
         }
-        let colours: Vec<Colour> = groups
+        let colors: Vec<Color> = groups
             .iter()
             .map(|&(start, end)| {
-                // The one colour that dominates a group stays exact: large even areas must not shift.
+                // The one color that dominates a group stays exact: large even areas must not shift.
                 let group = &all[start..end];
                 let total: f64 = group.iter().map(|c| c.weight * c.weight).sum();
-                let colour = group
+                let color = group
                     .iter()
                     .find(|c| c.weight * c.weight > 0.5 * total)
-                    .map_or_else(|| mean(group), |c| c.colour);
-                colour.map(|c| c.round() as u8)
+                    .map_or_else(|| mean(group), |c| c.color);
+                color.map(|c| c.round() as u8)
             })
             .collect();
         let mut nearest = vec![0_u8; counts.len()];
         for counted in &all {
-            nearest[counted.bin] = (0..colours.len())
+            nearest[counted.bin] = (0..colors.len())
                 .min_by(|&a, &b| {
-                    distance(counted.colour, colours[a])
-                        .total_cmp(&distance(counted.colour, colours[b]))
+                    distance(counted.color, colors[a])
+                        .total_cmp(&distance(counted.color, colors[b]))
                 })
                 .unwrap_or(0) as u8;
         }
-        Self { colours, nearest }
+        Self { colors, nearest }
     }
 
     fn bytes(&self) -> Vec<u8> {
-        let mut bytes: Vec<u8> = self.colours.iter().flatten().copied().collect();
-        bytes.resize(3 * (COLOURS + 1), 0);
+        let mut bytes: Vec<u8> = self.colors.iter().flatten().copied().collect();
+        bytes.resize(3 * (COLORS + 1), 0);
         bytes
     }
 }
 
 fn mean(group: &[Counted]) -> [f64; 3] {
     let total: f64 = group.iter().map(|c| c.weight).sum();
-    core::array::from_fn(|i| group.iter().map(|c| c.weight * c.colour[i]).sum::<f64>() / total)
+    core::array::from_fn(|i| group.iter().map(|c| c.weight * c.color[i]).sum::<f64>() / total)
 }
 
 /// The axis along which a group spreads most, and its weighted squared spread there.
@@ -337,7 +337,7 @@ fn widest(group: &[Counted]) -> (usize, f64) {
     let spread = |axis: usize| {
         group
             .iter()
-            .map(|c| c.weight * (c.colour[axis] - mean[axis]).powi(2))
+            .map(|c| c.weight * (c.color[axis] - mean[axis]).powi(2))
             .sum::<f64>()
     };
     (0..3)
@@ -347,7 +347,7 @@ fn widest(group: &[Counted]) -> (usize, f64) {
 }
 
 /// Squared distance, green counting most, as for the eye.
-fn distance(a: [f64; 3], b: Colour) -> f64 {
+fn distance(a: [f64; 3], b: Color) -> f64 {
     [2.0, 4.0, 3.0]
         .iter()
         .zip(a.iter().zip(&b))
@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_come_back_in_their_colours() {
+    fn frames_come_back_in_their_colors() {
         let mut film = Film::new(25.0);
         let pictures = [picture(0), picture(0), picture(200), picture(90)];
         for picture in &pictures {

@@ -1,14 +1,14 @@
 //! 2D: particles melt into one filled shape with a smooth edge.
 //!
 //! Every particle adds a bump w = (1 − r²/h²)² around it; where the bumps sum to more than a threshold there is
-//! material, coloured by the bumps' mean. Neighbours close the gaps between them, while a lone particle is a disc.
+//! material, colored by the bumps' mean. Neighbors close the gaps between them, while a lone particle is a disc.
 
 use std::ops::Range;
 
 use super::palette::{self, ToScreen};
-use super::{Drawn, Picture, Scenery, Solid, Style};
+use super::{DrawableParticles, Picture, Scenery, Solid, Style};
 
-/// Reach h of a bump, in sizes of a particle: gaps between neighbours up to two and a half sizes wide are filled.
+/// Reach h of a bump, in sizes of a particle: gaps between neighbors up to two and a half sizes wide are filled.
 pub(super) const REACH: f32 = 2.0;
 
 /// Material is where bumps sum to this.
@@ -22,20 +22,20 @@ const MARGIN: f64 = 0.025;
 
 /// Where the scene is on the picture.
 #[derive(Clone, Debug)]
-pub(super) struct Plane {
+pub(super) struct FlatPainter {
     width: usize,
     height: usize,
     samples: usize,
     /// World position \[m\] of the picture's top left corner.
     corner: [f64; 2],
-    /// Samples a metre.
+    /// Samples a meter.
     scale: f64,
     /// The walls as left, right, bottom, top \[m\].
     walls: Option<[f64; 4]>,
-    background: palette::Colour,
+    background: palette::Color,
 }
 
-impl Plane {
+impl FlatPainter {
     pub(super) fn new(scenery: &Scenery, style: &Style) -> Self {
         let (min, max) = scenery.bounds;
         let room = MARGIN * (max[0] - min[0]).max(max[1] - min[1]);
@@ -70,15 +70,15 @@ impl Plane {
         ];
     }
 
-    pub(super) fn render(&self, particles: &Drawn, solids: &[Solid]) -> Picture {
+    pub(super) fn render(&self, particles: &DrawableParticles, solids: &[Solid]) -> Picture {
         let (columns, rows) = (self.width * self.samples, self.height * self.samples);
-        // Sum of bumps, then of bump × colour.
+        // Sum of bumps, then of bump × color.
         let mut sums = vec![[0.0_f32; 4]; columns * rows];
-        for ((x, &size), colour) in particles
+        for ((x, &size), color) in particles
             .position
             .iter()
             .zip(&particles.size)
-            .zip(&particles.colour)
+            .zip(&particles.color)
         {
             // Never so small that it falls between samples.
             let reach = (REACH * size * self.scale as f32).max(0.9 * self.samples as f32);
@@ -100,9 +100,9 @@ impl Plane {
                     let w = (1.0 - (du * du + dv * dv) * inverse).max(0.0);
                     let w = w * w;
                     sum[0] += w;
-                    sum[1] += w * colour[0];
-                    sum[2] += w * colour[1];
-                    sum[3] += w * colour[2];
+                    sum[1] += w * color[0];
+                    sum[2] += w * color[1];
+                    sum[3] += w * color[2];
                 }
             }
         }
@@ -124,8 +124,8 @@ impl Plane {
                     for sum in &sums[start..start + self.samples] {
                         let solid = ((sum[0] - THRESHOLD) / SOFT * 0.5 + 0.5).clamp(0.0, 1.0);
                         let mean = 1.0 / sum[0].max(f32::MIN_POSITIVE);
-                        let colour = [sum[1] * mean, sum[2] * mean, sum[3] * mean];
-                        let seen = palette::mix(background, colour, solid);
+                        let color = [sum[1] * mean, sum[2] * mean, sum[3] * mean];
+                        let seen = palette::mix(background, color, solid);
                         total = core::array::from_fn(|i| total[i] + seen[i] * share);
                     }
                 }
@@ -139,7 +139,7 @@ impl Plane {
             height: self.height as u32,
             rgb: light
                 .into_iter()
-                .flat_map(|light| screen.colour(light))
+                .flat_map(|light| screen.color(light))
                 .collect(),
         }
     }
@@ -170,7 +170,7 @@ impl Plane {
                     let (distance, _) = solid.placed.distance([x, y, 0.0]);
                     let part = (0.5 - distance * pixels).clamp(0.0, 1.0) as f32;
                     let seen = &mut light[row * self.width + column];
-                    *seen = palette::mix(*seen, solid.colour, part);
+                    *seen = palette::mix(*seen, solid.color, part);
                 }
             }
         }
@@ -203,12 +203,12 @@ impl Plane {
     }
 }
 
-/// How far walls go from the background to grey.
+/// How far walls go from the background to gray.
 const WALL: f32 = 0.25;
 
-/// Samples within `reach` of `centre`, of `count`; none for what is outside or not a number.
-fn span(centre: f32, reach: f32, count: usize) -> Option<(usize, usize)> {
-    let low = (centre - reach).ceil().max(0.0);
-    let high = (centre + reach).floor().min(count as f32 - 1.0);
+/// Samples within `reach` of `center`, of `count`; none for what is outside or not a number.
+fn span(center: f32, reach: f32, count: usize) -> Option<(usize, usize)> {
+    let low = (center - reach).ceil().max(0.0);
+    let high = (center + reach).floor().min(count as f32 - 1.0);
     (low <= high).then_some((low as usize, high as usize))
 }

@@ -5,35 +5,35 @@
 //!          └► space (3D: lit spheres) ──────┴─► Picture ─► PNG
 //!                                                      └─► Film ─► GIF
 //! ```
-//! Everything a film must not change between frames (view, colours, ranges) is decided once, by [`Renderer::new`].
+//! Everything a film must not change between frames (view, colors, ranges) is decided once, by [`Renderer::new`].
 
-mod side_by_side;
 mod camera;
 mod drawable;
 mod film;
+mod flat;
 mod mp4;
 mod palette;
-mod flat;
 mod perspective;
+mod side_by_side;
 
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
 use crate::files::{Durability, write_whole_io};
-use drawable::Drawn;
+use drawable::DrawableParticles;
 use lahar::boundary::Placed;
 use lahar::{Collider, Field, Simulate, Snapshot};
 use lahar_scene::scene::{ColliderInfo, Scene};
 
-pub use side_by_side::side_by_side;
 pub use camera::Camera;
 pub use film::Film;
 pub use mp4::{Mp4, Mp4Maker};
 pub use palette::{
-    BACKGROUND, COLLIDER, Colour, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, body_colour,
-    model_colours,
+    BACKGROUND, COLLIDER, Color, PRESSURE_RAMP, REST_RAMP, SPEED_RAMP, along, body_color,
+    model_colors,
 };
+pub use side_by_side::side_by_side;
 
 /// The fields that a picture is drawn from; those that a snapshot lacks are done without.
 pub const FIELDS: &[Field] = &[
@@ -121,19 +121,19 @@ pub struct Scenery {
     pub dx: f64,
     /// A speed that the scene is expected to reach \[m/s\]; 0 if nothing is known.
     pub speed: f64,
-    /// Colour behind everything.
-    pub background: Colour,
-    /// Colours of the materials, by index; those beyond the end take them again from the start.
-    pub colours: Vec<Colour>,
-    /// Colours of bodies that have their own, by number.
-    pub bodies: Vec<Option<Colour>>,
-    /// Colliders and their colours; in 2D without end along z.
-    pub colliders: Vec<(Collider<3>, Colour)>,
+    /// Color behind everything.
+    pub background: Color,
+    /// Colors of the materials, by index; those beyond the end take them again from the start.
+    pub colors: Vec<Color>,
+    /// Colors of bodies that have their own, by number.
+    pub bodies: Vec<Option<Color>>,
+    /// Colliders and their colors; in 2D without end along z.
+    pub colliders: Vec<(Collider<3>, Color)>,
 }
 
 impl Scenery {
     /// What can be seen from the simulation at its start; `models` are the names of the materials' models, by
-    /// index ("fluid", "snow", ...), which choose the colours.
+    /// index ("fluid", "snow", ...), which choose the colors.
     pub fn of(simulation: &dyn Simulate, models: &[&str]) -> Self {
         let bounds = match simulation.domain() {
             Some(domain) => Bounds::Domain(domain),
@@ -189,7 +189,7 @@ impl Scenery {
             // What falls half the height of the scene.
             speed: (pull * (bounds.1[up] - bounds.0[up]).max(0.0)).sqrt(),
             background: BACKGROUND,
-            colours: model_colours(models),
+            colors: model_colors(models),
             bodies: Vec::new(),
             colliders: Vec::new(),
         }
@@ -201,8 +201,8 @@ impl Scenery {
         self.colliders = colliders
             .iter()
             .map(|info| {
-                let colour = info.color.unwrap_or(COLLIDER);
-                (info.collider.clone(), colour)
+                let color = info.color.unwrap_or(COLLIDER);
+                (info.collider.clone(), color)
             })
             .collect();
         self
@@ -240,11 +240,11 @@ fn around(snapshot: &Snapshot, dx: f64) -> ([f64; 3], [f64; 3]) {
     (min, max)
 }
 
-/// What colours mean. Numbers are on fixed scales, the window's colours: [`SPEED_RAMP`], [`PRESSURE_RAMP`],
+/// What colors mean. Numbers are on fixed scales, the window's colors: [`SPEED_RAMP`], [`PRESSURE_RAMP`],
 /// [`REST_RAMP`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Colouring {
-    /// The material, or the body's own colour; brighter where it is fast.
+pub enum Coloring {
+    /// The material, or the body's own color; brighter where it is fast.
     #[default]
     Material,
     /// The body.
@@ -268,8 +268,8 @@ pub struct Style {
     pub height: u32,
     /// Samples a pixel and axis.
     pub samples: u32,
-    /// What colours mean.
-    pub colouring: Colouring,
+    /// What colors mean.
+    pub coloring: Coloring,
 }
 
 impl Default for Style {
@@ -278,12 +278,12 @@ impl Default for Style {
             width: 640,
             height: 480,
             samples: 3,
-            colouring: Colouring::Material,
+            coloring: Coloring::Material,
         }
     }
 }
 
-/// Draws the snapshots of one scene, all by the same view and colours.
+/// Draws the snapshots of one scene, all by the same view and colors.
 #[derive(Clone, Debug)]
 pub struct Renderer {
     scenery: Scenery,
@@ -303,8 +303,8 @@ fn affordable(style: &Style) -> u32 {
 
 #[derive(Clone, Debug)]
 enum View {
-    Plane(flat::Plane),
-    Space(Box<perspective::Space>),
+    Flat(flat::FlatPainter),
+    Perspective(Box<perspective::PerspectivePainter>),
 }
 
 impl Renderer {
@@ -317,9 +317,11 @@ impl Renderer {
             ..style
         };
         let view = if scenery.dimension == 2 {
-            View::Plane(flat::Plane::new(&scenery, &style))
+            View::Flat(flat::FlatPainter::new(&scenery, &style))
         } else {
-            View::Space(Box::new(perspective::Space::new(&scenery, &style)))
+            View::Perspective(Box::new(perspective::PerspectivePainter::new(
+                &scenery, &style,
+            )))
         };
         Self {
             scenery,
@@ -331,7 +333,7 @@ impl Renderer {
     /// Looks from `camera` instead; nothing in 2D.
     #[must_use]
     pub fn with_camera(mut self, camera: Camera) -> Self {
-        if let View::Space(space) = &mut self.view {
+        if let View::Perspective(space) = &mut self.view {
             space.camera = camera;
         }
         self
@@ -340,7 +342,7 @@ impl Renderer {
     /// Shows `height` \[m\] of the scene around `center` \[m\] instead of all of it; nothing in 3D.
     #[must_use]
     pub fn with_frame(mut self, center: [f64; 3], height: f64) -> Self {
-        if let View::Plane(plane) = &mut self.view {
+        if let View::Flat(plane) = &mut self.view {
             plane.frame(&self.style, [center[0], center[1]], height);
         }
         self
@@ -349,26 +351,26 @@ impl Renderer {
     /// Width and height of the pictures \[pixels\].
     pub fn size(&self) -> [u32; 2] {
         match &self.view {
-            View::Plane(plane) => plane.size(),
-            View::Space(space) => space.size(),
+            View::Flat(plane) => plane.size(),
+            View::Perspective(space) => space.size(),
         }
     }
 
     /// Draws one moment.
     pub fn render(&self, snapshot: &Snapshot) -> Picture {
-        let particles = Drawn::from(snapshot, &self.scenery, self.style.colouring);
+        let particles = DrawableParticles::from(snapshot, &self.scenery, self.style.coloring);
         let solids: Vec<Solid> = self
             .scenery
             .colliders
             .iter()
-            .map(|(collider, colour)| Solid {
+            .map(|(collider, color)| Solid {
                 placed: collider.at(snapshot.time),
-                colour: palette::linear(*colour),
+                color: palette::linear(*color),
             })
             .collect();
         match &self.view {
-            View::Plane(plane) => plane.render(&particles, &solids),
-            View::Space(space) => space.render(&particles, &solids),
+            View::Flat(plane) => plane.render(&particles, &solids),
+            View::Perspective(space) => space.render(&particles, &solids),
         }
     }
 }
@@ -377,7 +379,7 @@ impl Renderer {
 struct Solid {
     placed: Placed<3>,
     /// In linear light.
-    colour: [f32; 3],
+    color: [f32; 3],
 }
 
 #[cfg(test)]
@@ -407,7 +409,7 @@ mod tests {
             dx: 0.1,
             speed: 0.0,
             background: BACKGROUND,
-            colours: model_colours(&["fluid", "corotated"]),
+            colors: model_colors(&["fluid", "corotated"]),
             bodies: Vec::new(),
             colliders: Vec::new(),
         }
@@ -471,27 +473,27 @@ mod tests {
     }
 
     #[test]
-    fn bodies_have_their_own_colours() {
+    fn bodies_have_their_own_colors() {
         let mut scenery = scenery(2);
         scenery.bodies = vec![None, Some([250, 10, 20])];
         let mut moment = snapshot(2, &[0.5, 0.5, 1.5, 0.5], 0.09, &[0, 0]);
         moment.columns.push((Field::Body, Data::U32(vec![0, 1])));
-        for colouring in [Colouring::Material, Colouring::Body] {
+        for coloring in [Coloring::Material, Coloring::Body] {
             let style = Style {
-                colouring,
+                coloring,
                 ..Style::default()
             };
             let picture = Renderer::new(scenery.clone(), style).render(&moment);
             assert!(
                 count(&picture, |p| p == [250, 10, 20]) > 100,
-                "{colouring:?}"
+                "{coloring:?}"
             );
         }
     }
 
     /// Three bodies, pressed, at rest and torn, in 2D and 3D: the scale's ends and its middle.
     #[test]
-    fn density_and_the_jacobian_have_colours() {
+    fn density_and_the_jacobian_have_colors() {
         for dimension in [2, 3] {
             let middle = [0.5; 3];
             let positions: Vec<f64> = [0.4, 1.0, 1.6]
@@ -508,10 +510,11 @@ mod tests {
             moment.columns.push((Field::Mass, Data::F32(vec![mass; 3])));
             let jacobian = Data::F32(vec![0.9, 1.0, 1.1]);
             moment.columns.push((Field::Jacobian, jacobian));
-            let drawn = |colouring| Drawn::from(&moment, &scenery(dimension), colouring).colour;
+            let drawn =
+                |coloring| DrawableParticles::from(&moment, &scenery(dimension), coloring).color;
             let [below, rest, above] = REST_RAMP.map(palette::linear);
-            assert_eq!(drawn(Colouring::Jacobian(0.9, 1.1)), [below, rest, above]);
-            let density = drawn(Colouring::Density(950.0, 1050.0));
+            assert_eq!(drawn(Coloring::Jacobian(0.9, 1.1)), [below, rest, above]);
+            let density = drawn(Coloring::Density(950.0, 1050.0));
             assert_eq!(density, [above, rest, below]);
         }
     }
@@ -538,7 +541,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lone_particle_is_a_disc_of_its_colour() {
+    fn a_lone_particle_is_a_disc_of_its_color() {
         let renderer = Renderer::new(scenery(2), Style::default());
         let picture = renderer.render(&snapshot(2, &[1.0, 0.5], 0.01, &[1]));
         let pixels = 640.0 / 2.1;
@@ -574,7 +577,7 @@ mod tests {
         let renderer = Renderer::new(scenery(2), Style::default());
         let picture = renderer.render(&snapshot(2, &positions, 4e-4, &[0; 1600]));
         let pixels = 640.0 / 2.1;
-        let fluid = scenery(2).colours[0];
+        let fluid = scenery(2).colors[0];
         let filled = count(&picture, |p| p == fluid) as f64;
         assert!(filled > 0.64 * pixels * pixels * 0.97, "{filled}");
     }

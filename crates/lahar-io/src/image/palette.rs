@@ -1,35 +1,35 @@
-//! Colours: those of the Taichi examples for what they have, others in their spirit; light and what screens show.
+//! Colors: those of the Taichi examples for what they have, others in their spirit; light and what screens show.
 
 /// Red, green, blue in sRGB.
-pub type Colour = [u8; 3];
+pub type Color = [u8; 3];
 
-const fn hex(rgb: u32) -> Colour {
+const fn hex(rgb: u32) -> Color {
     [(rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8]
 }
 
 /// Behind everything.
-pub const BACKGROUND: Colour = hex(0x11_2F41);
+pub const BACKGROUND: Color = hex(0x11_2F41);
 
-/// Colours of fluids, solids, and grains or snow; a second material of a kind takes the second colour, and so on.
-const FLUIDS: [Colour; 4] = [
+/// Colors of fluids, solids, and grains or snow; a second material of a kind takes the second color, and so on.
+const FLUIDS: [Color; 4] = [
     hex(0x06_8587),
     hex(0x3F_7FD6),
     hex(0xD9_9A2B),
     hex(0x8A_5A44),
 ];
-const SOLIDS: [Colour; 4] = [
+const SOLIDS: [Color; 4] = [
     hex(0xED_553B),
     hex(0xF2_B134),
     hex(0x9B_5DE5),
     hex(0x5B_C26A),
 ];
-const GRAINS: [Colour; 3] = [hex(0xEE_EEF0), hex(0xD8_B982), hex(0xA9_8467)];
+const GRAINS: [Color; 3] = [hex(0xEE_EEF0), hex(0xD8_B982), hex(0xA9_8467)];
 
-/// Colours of bodies, by number.
+/// Colors of bodies, by number.
 /// Of colliders that have none of their own.
-pub const COLLIDER: Colour = hex(0x8A_98_A3);
+pub const COLLIDER: Color = hex(0x8A_98_A3);
 
-const BODIES: [Colour; 8] = [
+const BODIES: [Color; 8] = [
     hex(0x06_8587),
     hex(0xED_553B),
     hex(0xEE_EEF0),
@@ -40,47 +40,47 @@ const BODIES: [Colour; 8] = [
     hex(0xD9_7AA6),
 ];
 
-/// The colour of a body that has none of its own, by its number.
-pub fn body_colour(number: usize) -> Colour {
+/// The color of a body that has none of its own, by its number.
+pub fn body_color(number: usize) -> Color {
     BODIES[number % BODIES.len()]
 }
 
-/// A colour a material, by the names of their models: water teal, jelly red, snow white.
-pub fn model_colours(models: &[&str]) -> Vec<Colour> {
+/// A color a material, by the names of their models: water teal, jelly red, snow white.
+pub fn model_colors(models: &[&str]) -> Vec<Color> {
     let mut seen = [0_usize; 3];
     models
         .iter()
         .map(|model| {
-            let (kind, colours): (usize, &[Colour]) = match *model {
+            let (kind, colors): (usize, &[Color]) = match *model {
                 "fluid" => (0, &FLUIDS),
                 "none" | "snow" | "sand" => (2, &GRAINS),
                 _ => (1, &SOLIDS),
             };
             let nth = seen[kind];
             seen[kind] += 1;
-            colours[nth % colours.len()]
+            colors[nth % colors.len()]
         })
         .collect()
 }
 
-/// What a colour becomes where its material is fast: lighter, towards white.
-pub(super) fn bright(colour: Colour) -> Colour {
+/// What a color becomes where its material is fast: lighter, towards white.
+pub(super) fn bright(color: Color) -> Color {
     // White stays tellable from fast white by turning towards a cold blue.
-    let towards: Colour = if colour.iter().all(|&c| c > 0xD0) {
+    let towards: Color = if color.iter().all(|&c| c > 0xD0) {
         [0xA8, 0xD4, 0xF0]
     } else {
         [0xD8, 0xFF, 0xFA]
     };
-    core::array::from_fn(|i| ((f32::from(colour[i]) * 0.35) + f32::from(towards[i]) * 0.65) as u8)
+    core::array::from_fn(|i| ((f32::from(color[i]) * 0.35) + f32::from(towards[i]) * 0.65) as u8)
 }
 
-/// A colour some part of the way to white.
-pub(super) fn lighter(colour: Colour, part: f32) -> Colour {
-    colour.map(|c| (f32::from(c) + (255.0 - f32::from(c)) * part) as u8)
+/// A color some part of the way to white.
+pub(super) fn lighter(color: Color, part: f32) -> Color {
+    color.map(|c| (f32::from(c) + (255.0 - f32::from(c)) * part) as u8)
 }
 
 /// From slow to fast.
-pub const SPEED_RAMP: [Colour; 5] = [
+pub const SPEED_RAMP: [Color; 5] = [
     hex(0x0D_5C86),
     hex(0x0D_979B),
     hex(0x7F_D09C),
@@ -89,7 +89,7 @@ pub const SPEED_RAMP: [Colour; 5] = [
 ];
 
 /// From low pressure to high.
-pub const PRESSURE_RAMP: [Colour; 5] = [
+pub const PRESSURE_RAMP: [Color; 5] = [
     hex(0x3B_3A8C),
     hex(0x8A_44A6),
     hex(0xDB_4D6D),
@@ -98,13 +98,13 @@ pub const PRESSURE_RAMP: [Colour; 5] = [
 ];
 
 /// Below rest, at rest, above it: of J and of density.
-pub const REST_RAMP: [Colour; 3] = [hex(0x3D_86E0), hex(0xE4_E8EA), hex(0xED_553B)];
+pub const REST_RAMP: [Color; 3] = [hex(0x3D_86E0), hex(0xE4_E8EA), hex(0xED_553B)];
 
 /// What is not a number: cannot be overlooked.
-const NOT_A_NUMBER: Colour = hex(0xFF_00FF);
+const NOT_A_NUMBER: Color = hex(0xFF_00FF);
 
-/// The colour at `at`, 0 to 1, of evenly spaced ones.
-pub fn along(ramp: &[Colour], at: f32) -> Colour {
+/// The color at `at`, 0 to 1, of evenly spaced ones.
+pub fn along(ramp: &[Color], at: f32) -> Color {
     let Some(last) = ramp.len().checked_sub(1) else {
         return NOT_A_NUMBER;
     };
@@ -121,9 +121,9 @@ pub fn along(ramp: &[Colour], at: f32) -> Colour {
     })
 }
 
-/// Linear light, 0 to 1, of an sRGB colour.
-pub(super) fn linear(colour: Colour) -> [f32; 3] {
-    colour.map(|c| {
+/// Linear light, 0 to 1, of an sRGB color.
+pub(super) fn linear(color: Color) -> [f32; 3] {
+    color.map(|c| {
         let c = f32::from(c) / 255.0;
         if c <= 0.040_45 {
             c / 12.92
@@ -155,7 +155,7 @@ impl ToScreen {
         )
     }
 
-    pub(super) fn colour(&self, light: [f32; 3]) -> Colour {
+    pub(super) fn color(&self, light: [f32; 3]) -> Color {
         light.map(|c| self.0[(c.clamp(0.0, 1.0) * Self::STEPS as f32 + 0.5) as usize])
     }
 }
@@ -170,20 +170,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_colour_survives_the_way_through_light() {
+    fn every_color_survives_the_way_through_light() {
         let screen = ToScreen::new();
         for c in 0..=255 {
-            assert_eq!(screen.colour(linear([c; 3])), [c; 3]);
+            assert_eq!(screen.color(linear([c; 3])), [c; 3]);
         }
     }
 
     #[test]
     fn materials_of_a_kind_differ() {
-        let colours = model_colours(&["fluid", "corotated", "fluid", "snow"]);
-        assert_eq!(colours[0], hex(0x06_8587));
-        assert_eq!(colours[1], hex(0xED_553B));
-        assert_ne!(colours[0], colours[2]);
-        assert_eq!(colours[3], hex(0xEE_EEF0));
+        let colors = model_colors(&["fluid", "corotated", "fluid", "snow"]);
+        assert_eq!(colors[0], hex(0x06_8587));
+        assert_eq!(colors[1], hex(0xED_553B));
+        assert_ne!(colors[0], colors[2]);
+        assert_eq!(colors[3], hex(0xEE_EEF0));
     }
 
     #[test]

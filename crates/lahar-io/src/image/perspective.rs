@@ -9,7 +9,7 @@ use core::f32::consts::TAU;
 
 use super::camera::{self, Camera, add_scaled, cross, dot, sub, unit};
 use super::palette::{self, ToScreen};
-use super::{Drawn, Picture, Scenery, Solid, Style};
+use super::{DrawableParticles, Picture, Scenery, Solid, Style};
 
 /// Radius of a ball, in sizes of a particle.
 const RADIUS: f32 = 0.9;
@@ -32,7 +32,7 @@ const AMBIENT: f32 = 0.42;
 const LAMP: f32 = 0.78;
 
 #[derive(Clone, Debug)]
-pub(super) struct Space {
+pub(super) struct PerspectivePainter {
     pub(super) camera: Camera,
     width: usize,
     height: usize,
@@ -43,17 +43,17 @@ pub(super) struct Space {
     walls: bool,
     /// Towards the lamp.
     lamp: [f32; 3],
-    background: palette::Colour,
+    background: palette::Color,
 }
 
 /// What each sample shows.
-struct Seen {
+struct DepthBuffer {
     /// Along the view \[m\]; infinite where there is nothing.
     depth: Vec<f32>,
     particle: Vec<u32>,
 }
 
-impl Space {
+impl PerspectivePainter {
     pub(super) fn new(scenery: &Scenery, style: &Style) -> Self {
         let (min, max) = scenery.bounds;
         let (width, height) = (style.width as usize / 2 * 2, style.height as usize / 2 * 2);
@@ -80,8 +80,8 @@ impl Space {
         [self.width as u32, self.height as u32]
     }
 
-    pub(super) fn render(&self, particles: &Drawn, solids: &[Solid]) -> Picture {
-        let eye = Eye::new(
+    pub(super) fn render(&self, particles: &DrawableParticles, solids: &[Solid]) -> Picture {
+        let eye = Viewport::new(
             &self.camera,
             self.width * self.samples,
             self.height * self.samples,
@@ -106,7 +106,7 @@ impl Space {
                         total = add_scaled(total, *seen, share);
                     }
                 }
-                rgb.extend(screen.colour(total));
+                rgb.extend(screen.color(total));
             }
         }
         Picture {
@@ -136,7 +136,7 @@ impl Space {
     }
 
     /// Lines of a grid over the floor, some eight along its longer side.
-    fn floor_colour(&self, at: [f32; 3], width: f32) -> [f32; 3] {
+    fn floor_color(&self, at: [f32; 3], width: f32) -> [f32; 3] {
         let longest = (0..3)
             .filter(|&i| i != self.up)
             .map(|i| self.max[i] - self.min[i])
@@ -156,12 +156,12 @@ impl Space {
     }
 
     /// The box's twelve edges, faint, hidden by what is before them.
-    fn draw_edges(&self, eye: &Eye, depth: &[f32], light: &mut [[f32; 3]]) {
+    fn draw_edges(&self, eye: &Viewport, depth: &[f32], light: &mut [[f32; 3]]) {
         if !self.walls {
             return;
         }
         let corners = camera::corners(self.min, self.max);
-        let colour = palette::linear(EDGE);
+        let color = palette::linear(EDGE);
         let thick = 0.5 * self.samples as f32;
         for a in 0..8_usize {
             for bit in 0..3 {
@@ -201,7 +201,7 @@ impl Space {
                         {
                             let at = row as usize * eye.width + column as usize;
                             if z <= depth[at] * 1.001 {
-                                light[at] = palette::mix(light[at], colour, 0.75);
+                                light[at] = palette::mix(light[at], color, 0.75);
                             }
                         }
                     }
@@ -211,7 +211,7 @@ impl Space {
     }
 }
 
-const EDGE: palette::Colour = [0x6E, 0x93, 0xA6];
+const EDGE: palette::Color = [0x6E, 0x93, 0xA6];
 
 /// 1, 2 or 5 times a power of ten, near `length`.
 fn nice(length: f32) -> f32 {
@@ -230,7 +230,7 @@ fn nice(length: f32) -> f32 {
 }
 
 /// The camera with its picture of samples.
-struct Eye {
+struct Viewport {
     from: [f32; 3],
     right: [f32; 3],
     up: [f32; 3],
@@ -243,7 +243,7 @@ struct Eye {
     looks: Box<[[[f32; 2]; DIRECTIONS]; 16]>,
 }
 
-impl Eye {
+impl Viewport {
     fn new(camera: &Camera, width: usize, height: usize) -> Self {
         let [right, up, forward] = camera.frame();
         Self {
@@ -285,7 +285,7 @@ impl Eye {
         core::array::from_fn(|i| self.forward[i] + u * self.right[i] + v * self.up[i])
     }
 
-    fn balls(&self, particles: &Drawn) -> Seen {
+    fn balls(&self, particles: &DrawableParticles) -> DepthBuffer {
         let mut depth = vec![f32::INFINITY; self.width * self.height];
         let mut particle = vec![NOTHING; self.width * self.height];
         for (index, (&x, &size)) in particles.position.iter().zip(&particles.size).enumerate() {
@@ -323,12 +323,18 @@ impl Eye {
                 }
             }
         }
-        Seen { depth, particle }
+        DepthBuffer { depth, particle }
     }
 
     /// Adds the colliders, as far as they are within the scene's box: marches along each ray by the
     /// distance that is free around it. Solid k is seen as particle `NOTHING − 1 − k`.
-    fn trace(&self, space: &Space, solids: &[Solid], seen: &mut Seen, raw: &mut [f32]) {
+    fn trace(
+        &self,
+        space: &PerspectivePainter,
+        solids: &[Solid],
+        seen: &mut DepthBuffer,
+        raw: &mut [f32],
+    ) {
         if solids.is_empty() {
             return;
         }
@@ -368,7 +374,7 @@ impl Eye {
 
     /// Depth, smoothed over about two balls, along rows and columns in turn. What is much nearer does not pull, and
     /// what is much farther pulls no more than what is a little farther: edges stay where they are.
-    fn smooth(&self, seen: &mut Seen, particles: &Drawn) {
+    fn smooth(&self, seen: &mut DepthBuffer, particles: &DrawableParticles) {
         let (w, h) = (self.width, self.height);
         let radius: Vec<f32> = seen
             .particle
@@ -384,12 +390,12 @@ impl Eye {
             for row in 0..h {
                 for column in 0..w {
                     let at = row * w + column;
-                    let centre = seen.depth[at];
+                    let center = seen.depth[at];
                     if seen.particle[at] == NOTHING {
                         continue;
                     }
                     let jump = JUMP * radius[at];
-                    let reach = (SMOOTHING * radius[at] * self.focal / centre)
+                    let reach = (SMOOTHING * radius[at] * self.focal / center)
                         .round()
                         .clamp(1.0, 16.0) as usize;
                     let (place, length, stride) = if across { (column, w, 1) } else { (row, h, w) };
@@ -397,8 +403,8 @@ impl Eye {
                     let falloff = 1.0 / ((reach * reach) as f32 * 1.3);
                     let (mut total, mut weight) = (0.0, 1.0);
                     for step in 1..=side {
-                        let a = seen.depth[at - step * stride] - centre;
-                        let b = seen.depth[at + step * stride] - centre;
+                        let a = seen.depth[at - step * stride] - center;
+                        let b = seen.depth[at + step * stride] - center;
                         // In pairs, so that slopes stay; infinite where there is nothing.
                         if a.min(b) > -jump && a.max(b) < f32::INFINITY {
                             let share = 1.0 - (step * step) as f32 * falloff;
@@ -406,7 +412,7 @@ impl Eye {
                             weight += 2.0 * share;
                         }
                     }
-                    other[at] = centre + total / weight;
+                    other[at] = center + total / weight;
                 }
             }
             core::mem::swap(&mut seen.depth, &mut other);
@@ -422,7 +428,7 @@ impl Eye {
     }
 
     /// The normal of the smoothed depth, by the smaller of the differences on either side.
-    fn normal(&self, depth: &[f32], at: usize, centre: [f32; 3]) -> [f32; 3] {
+    fn normal(&self, depth: &[f32], at: usize, center: [f32; 3]) -> [f32; 3] {
         let (column, row) = (at % self.width, at / self.width);
         let difference = |back: Option<usize>, front: Option<usize>| {
             let slope = |to: usize| depth[to] - depth[at];
@@ -447,11 +453,11 @@ impl Eye {
         );
         match (across, down) {
             (Some((a, s)), Some((d, t))) => {
-                let across = sub(self.point(depth, a), centre).map(|c| c * s);
-                let down = sub(self.point(depth, d), centre).map(|c| c * t);
+                let across = sub(self.point(depth, a), center).map(|c| c * s);
+                let down = sub(self.point(depth, d), center).map(|c| c * t);
                 unit(cross(down, across))
             }
-            _ => unit(sub(self.from, centre)),
+            _ => unit(sub(self.from, center)),
         }
     }
 
@@ -460,7 +466,7 @@ impl Eye {
         &self,
         depth: &[f32],
         at: usize,
-        centre: [f32; 3],
+        center: [f32; 3],
         normal: [f32; 3],
         reach: f32,
     ) -> f32 {
@@ -478,7 +484,7 @@ impl Eye {
             if !depth[other].is_finite() {
                 continue;
             }
-            let to = sub(self.point(depth, other), centre);
+            let to = sub(self.point(depth, other), center);
             let distance = dot(to, to).sqrt().max(1e-9);
             let rise = (dot(to, normal) / distance - 0.12).max(0.0);
             sum += rise * (1.0 - distance / (2.5 * reach)).max(0.0);
@@ -488,9 +494,9 @@ impl Eye {
 
     fn paint(
         &self,
-        space: &Space,
-        seen: &Seen,
-        (particles, solids): (&Drawn, &[Solid]),
+        space: &PerspectivePainter,
+        seen: &DepthBuffer,
+        (particles, solids): (&DrawableParticles, &[Solid]),
         shadow: &Shadow,
     ) -> Vec<[f32; 3]> {
         let far = palette::linear(space.background);
@@ -506,30 +512,30 @@ impl Eye {
                 let backdrop = palette::mix(sky, far, (row / self.height as f32).min(1.0));
                 light.push(space.floor(self.from, ray).map_or(backdrop, |floor| {
                     let away = dot(sub(floor, self.from), self.forward);
-                    let colour =
-                        space.floor_colour(floor, 1.1 * away / self.focal * space.samples as f32);
+                    let color =
+                        space.floor_color(floor, 1.1 * away / self.focal * space.samples as f32);
                     let lit = 1.0 - 0.62 * shadow.at(floor, 0.0);
-                    colour.map(|c| c * lit)
+                    color.map(|c| c * lit)
                 }));
                 continue;
             }
-            let centre = self.point(&seen.depth, at);
+            let center = self.point(&seen.depth, at);
             let solid = solids.get((NOTHING - 1 - particle) as usize);
-            let (radius, normal, colour) = match solid {
+            let (radius, normal, color) = match solid {
                 Some(solid) => {
-                    let (_, normal) = solid.placed.distance(centre.map(f64::from));
-                    (0.01 * diagonal, normal.map(|n| n as f32), solid.colour)
+                    let (_, normal) = solid.placed.distance(center.map(f64::from));
+                    (0.01 * diagonal, normal.map(|n| n as f32), solid.color)
                 }
                 None => (
                     RADIUS * particles.size[particle as usize],
-                    self.normal(&seen.depth, at, centre),
-                    particles.colour[particle as usize],
+                    self.normal(&seen.depth, at, center),
+                    particles.color[particle as usize],
                 ),
             };
             let view = unit(ray.map(|c| -c));
-            let open = 1.0 - 0.75 * self.hidden(&seen.depth, at, centre, normal, 5.0 * radius);
+            let open = 1.0 - 0.75 * self.hidden(&seen.depth, at, center, normal, 5.0 * radius);
             let lamp = dot(normal, space.lamp);
-            let lit = LAMP * lamp.max(0.0) * (1.0 - 0.75 * shadow.at(centre, 2.2 * radius));
+            let lit = LAMP * lamp.max(0.0) * (1.0 - 0.75 * shadow.at(center, 2.2 * radius));
             // From above comes more light than from below.
             let around = AMBIENT * (0.75 + 0.25 * normal[space.up]) * open;
             let half = unit(add_scaled(space.lamp, view, 1.0));
@@ -540,7 +546,7 @@ impl Eye {
             };
             let rim = (1.0 - dot(normal, view).max(0.0)).powi(4) * 0.10 * open;
             let surface: [f32; 3] =
-                core::array::from_fn(|i| colour[i] * (around + lit) * 1.15 + shine + rim * sky[i]);
+                core::array::from_fn(|i| color[i] * (around + lit) * 1.15 + shine + rim * sky[i]);
             let haze = ((seen.depth[at] - nearest) / diagonal).clamp(0.0, 1.0) * 0.28;
             light.push(palette::mix(surface, sky, haze));
         }
@@ -557,13 +563,13 @@ struct Shadow {
     other: [f32; 3],
     lamp: [f32; 3],
     corner: [f32; 2],
-    /// Samples a metre.
+    /// Samples a meter.
     scale: f32,
     height: Vec<f32>,
 }
 
 impl Shadow {
-    fn cast(space: &Space, particles: &Drawn) -> Self {
+    fn cast(space: &PerspectivePainter, particles: &DrawableParticles) -> Self {
         let lamp = space.lamp;
         let helper = if lamp[0].abs() < 0.7 {
             [1.0, 0.0, 0.0]

@@ -9,7 +9,7 @@ use embedded_graphics::primitives::Rectangle;
 use embedded_graphics::text::{Baseline, Text};
 
 use super::Picture;
-use super::palette::Colour;
+use super::palette::Color;
 
 /// Of the strip that titles stand in \[pixels\].
 const STRIP: u32 = 28;
@@ -17,7 +17,7 @@ const STRIP: u32 = 28;
 /// Between two pictures \[pixels\].
 const GAP: u32 = 4;
 
-const STRIP_COLOUR: Colour = [0x20, 0x20, 0x20];
+const STRIP_COLOR: Color = [0x20, 0x20, 0x20];
 
 /// One picture of several of one size, from left to right, each under its title; `None` if there are
 /// none, or their sizes differ.
@@ -37,7 +37,7 @@ pub fn side_by_side(pictures: &[(&str, &Picture)]) -> Option<Picture> {
         rgb: Vec::new(),
     };
     let pixels = whole.width as usize * whole.height as usize;
-    whole.rgb = STRIP_COLOUR.repeat(pixels);
+    whole.rgb = STRIP_COLOR.repeat(pixels);
     for (index, (title, picture)) in (0..).zip(pictures) {
         let left = index * (width + GAP);
         let font = MonoTextStyle::new(&ascii::FONT_9X18, Rgb888::WHITE);
@@ -73,11 +73,11 @@ impl DrawTarget for Canvas<'_> {
         pixels: I,
     ) -> Result<(), Infallible> {
         let (width, height) = (self.0.width, self.0.height);
-        for Pixel(Point { x, y }, colour) in pixels {
+        for Pixel(Point { x, y }, color) in pixels {
             let inside = (0..width as i32).contains(&x) && (0..height as i32).contains(&y);
             if inside {
                 let at = 3 * (y as usize * width as usize + x as usize);
-                self.0.rgb[at..at + 3].copy_from_slice(&[colour.r(), colour.g(), colour.b()]);
+                self.0.rgb[at..at + 3].copy_from_slice(&[color.r(), color.g(), color.b()]);
             }
         }
         Ok(())
@@ -104,7 +104,7 @@ mod tests {
         assert_eq!((whole.width, whole.height), (90 + GAP + 90, 10 + STRIP));
         let pixel = |x: u32, y: u32| whole.rgb[3 * (y * whole.width + x) as usize];
         assert_eq!(pixel(5, STRIP + 5), 100);
-        assert_eq!(pixel(90 + 1, STRIP + 5), STRIP_COLOUR[0]);
+        assert_eq!(pixel(90 + 1, STRIP + 5), STRIP_COLOR[0]);
         assert_eq!(pixel(90 + GAP + 5, STRIP + 5), 200);
         let white = |from: u32, to: u32| {
             let strip = (0..STRIP).flat_map(|y| (from..to).map(move |x| (x, y)));

@@ -28,7 +28,7 @@ pub use meshes::MeshFiles;
 pub use record::{Record, Status};
 pub use recording::{Recording, RecordingError, read_record};
 pub use table::Table;
-pub use writer::{Film, Pace, Pictures, Plan, Writer, film_pace};
+pub use writer::{FilmPace, FilmPlan, OutputPlan, PicturePlan, Writer, film_pace};
 
-pub use crate::checkpoint::{OutputState, PhaseSeconds, Written};
+pub use crate::checkpoint::{OutputCounts, OutputState, PhaseSeconds};
 pub use crate::files::OutputError;

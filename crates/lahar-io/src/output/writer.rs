@@ -9,7 +9,7 @@ use lahar::{Checkpoint, Diagnostics, ProbeSamples, Snapshot};
 
 use super::probes::ProbeFiles;
 use super::{DiagnosticsFile, RunFolder, frame_name, write_frame};
-use crate::checkpoint::{Header, OutputState, Store, Written};
+use crate::checkpoint::{Header, OutputCounts, OutputState, Store};
 use crate::export::{Format, TimeSeries};
 use crate::files::{Durability, GrowingFile, OutputError, make_folder, sync_folder, write_whole};
 use crate::image::{self, Renderer};
@@ -18,21 +18,21 @@ use crate::image::{self, Renderer};
 const UNDER_WAY: usize = 2;
 
 /// What to write of a run.
-pub struct Plan {
+pub struct OutputPlan {
     /// Where.
     pub folder: RunFolder,
     /// 2 or 3.
     pub dimension: usize,
     /// Particles of every frame, a file for each of these.
     pub formats: Vec<Format>,
-    /// Pictures of every frame as PNG, if wanted.
-    pub pictures: Option<Pictures>,
+    /// PicturePlan of every frame as PNG, if wanted.
+    pub pictures: Option<PicturePlan>,
     /// The film, if wanted.
-    pub film: Option<Film>,
+    pub film: Option<FilmPlan>,
 }
 
-/// Pictures kept as PNG.
-pub struct Pictures {
+/// PicturePlan kept as PNG.
+pub struct PicturePlan {
     /// Draws them.
     pub renderer: Renderer,
     /// Every so many frames.
@@ -40,19 +40,19 @@ pub struct Pictures {
 }
 
 /// A film.
-pub struct Film {
+pub struct FilmPlan {
     /// Draws it.
     pub renderer: Renderer,
     /// Which frames, and how fast.
-    pub pace: Pace,
+    pub pace: FilmPace,
 }
 
 /// Which frames a film shows, and how fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pace {
+pub struct FilmPace {
     /// Every so many frames.
     pub every: u64,
-    /// Pictures a second.
+    /// PicturePlan a second.
     pub rate: f64,
 }
 
@@ -64,9 +64,9 @@ const SHORT_FILM: f64 = 2.0;
 
 /// A film of `frames` frames at `frame_rate` a simulated second: in real time, skipping frames over 30 a second; runs
 /// that would flash by are slowed down to two seconds or more.
-pub fn film_pace(frame_rate: f64, frames: u64) -> Pace {
+pub fn film_pace(frame_rate: f64, frames: u64) -> FilmPace {
     let every = (frame_rate / FILM_RATE).ceil().max(1.0);
-    let real_time = Pace {
+    let real_time = FilmPace {
         every: every as u64,
         rate: frame_rate / every,
     };
@@ -74,7 +74,7 @@ pub fn film_pace(frame_rate: f64, frames: u64) -> Pace {
         return real_time;
     }
     let every = (frames as f64 / (SHORT_FILM * FILM_RATE)).floor().max(1.0);
-    Pace {
+    FilmPace {
         every: every as u64,
         rate: (frames as f64 / every / SHORT_FILM).clamp(5.0, FILM_RATE),
     }
@@ -97,7 +97,7 @@ struct Frame {
 /// Takes frames and writes them, in order, in the background.
 pub struct Writer {
     jobs: Option<SyncSender<Job>>,
-    thread: Option<JoinHandle<Result<Written, OutputError>>>,
+    thread: Option<JoinHandle<Result<OutputCounts, OutputError>>>,
 }
 
 impl Writer {
@@ -106,7 +106,7 @@ impl Writer {
     ///
     /// # Errors
     /// If something cannot be made.
-    pub fn start(plan: Plan, from: Option<&OutputState>) -> Result<Self, OutputError> {
+    pub fn start(plan: OutputPlan, from: Option<&OutputState>) -> Result<Self, OutputError> {
         let folder = &plan.folder;
         for (wanted, path) in [
             (!plan.formats.is_empty(), folder.frames()),
@@ -116,7 +116,7 @@ impl Writer {
                 make_folder(&path)?;
             }
         }
-        let work = Work::new(plan, from)?;
+        let work = OutputFiles::new(plan, from)?;
         let (jobs, queue) = sync_channel::<Job>(UNDER_WAY - 1);
         let path = work.plan.folder.path().to_owned();
         let thread = Builder::new()
@@ -203,16 +203,16 @@ impl Writer {
     ///
     /// # Errors
     /// What went wrong.
-    pub fn finish(mut self) -> Result<Written, OutputError> {
+    pub fn finish(mut self) -> Result<OutputCounts, OutputError> {
         self.end()
     }
 
-    fn end(&mut self) -> Result<Written, OutputError> {
+    fn end(&mut self) -> Result<OutputCounts, OutputError> {
         self.jobs = None;
         match self.thread.take().map(JoinHandle::join) {
             Some(Ok(result)) => result,
             Some(Err(panic)) => std::panic::resume_unwind(panic),
-            None => Ok(Written::default()),
+            None => Ok(OutputCounts::default()),
         }
     }
 }
@@ -227,23 +227,23 @@ impl Drop for Writer {
     }
 }
 
-struct Work {
-    plan: Plan,
+struct OutputFiles {
+    plan: OutputPlan,
     diagnostics: DiagnosticsFile,
     probes: ProbeFiles,
     series: Option<TimeSeries>,
     film: Option<(image::Film, GrowingFile)>,
-    written: Written,
+    written: OutputCounts,
     /// Files of frames, from the run's folder, and their lengths.
     files: Vec<(String, u64)>,
     /// How many of them are known to be on the disk.
     settled: usize,
 }
 
-impl Work {
-    fn new(plan: Plan, from: Option<&OutputState>) -> Result<Self, OutputError> {
+impl OutputFiles {
+    fn new(plan: OutputPlan, from: Option<&OutputState>) -> Result<Self, OutputError> {
         let folder = &plan.folder;
-        let written = from.map_or_else(Written::default, |state| state.written);
+        let written = from.map_or_else(OutputCounts::default, |state| state.written);
         let path = folder.time_series();
         let series = match plan.formats.contains(&Format::Vtk) {
             true => Some(
@@ -386,7 +386,7 @@ impl Work {
         Ok(())
     }
 
-    fn finish(mut self) -> Result<Written, OutputError> {
+    fn finish(mut self) -> Result<OutputCounts, OutputError> {
         if let Some((film, _)) = self.film.filter(|(film, _)| !film.is_empty()) {
             write_whole(
                 &self.plan.folder.video(),
@@ -405,10 +405,10 @@ impl Work {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::{BACKGROUND, Scenery, Style, model_colours};
+    use crate::image::{BACKGROUND, Scenery, Style, model_colors};
     use lahar::{Data, Field, ProbeSample};
 
-    fn plan(folder: RunFolder) -> Plan {
+    fn plan(folder: RunFolder) -> OutputPlan {
         let scenery = Scenery {
             dimension: 2,
             bounds: ([0.0; 3], [1.0, 1.0, 0.0]),
@@ -417,7 +417,7 @@ mod tests {
             dx: 0.1,
             speed: 1.0,
             background: BACKGROUND,
-            colours: model_colours(&["fluid"]),
+            colors: model_colors(&["fluid"]),
             bodies: Vec::new(),
             colliders: Vec::new(),
         };
@@ -429,17 +429,17 @@ mod tests {
                 ..Style::default()
             },
         );
-        Plan {
+        OutputPlan {
             folder,
             dimension: 2,
             formats: vec![Format::Npz, Format::Vtk],
-            pictures: Some(Pictures {
+            pictures: Some(PicturePlan {
                 renderer: renderer.clone(),
                 every: 1,
             }),
-            film: Some(Film {
+            film: Some(FilmPlan {
                 renderer,
-                pace: Pace {
+                pace: FilmPace {
                     every: 2,
                     rate: 25.0,
                 },
@@ -495,7 +495,7 @@ mod tests {
         assert_eq!(read.column("time").map(<[f64]>::len), Some(9));
         assert_eq!(
             written,
-            Written {
+            OutputCounts {
                 frames: 9,
                 particles: 9,
                 images: 9,
@@ -535,28 +535,28 @@ mod tests {
     fn films_play_in_real_time_unless_that_is_a_flash() {
         assert_eq!(
             film_pace(60.0, 180),
-            Pace {
+            FilmPace {
                 every: 2,
                 rate: 30.0
             }
         );
         assert_eq!(
             film_pace(25.0, 100),
-            Pace {
+            FilmPace {
                 every: 1,
                 rate: 25.0
             }
         );
         assert_eq!(
             film_pace(1000.0, 100),
-            Pace {
+            FilmPace {
                 every: 1,
                 rate: 30.0
             }
         );
         assert_eq!(
             film_pace(1000.0, 600),
-            Pace {
+            FilmPace {
                 every: 10,
                 rate: 30.0
             }

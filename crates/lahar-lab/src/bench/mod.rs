@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use lahar_scene::error::SceneError;
 use lahar_scene::scene::{Precision, Scene};
 pub use machine::{Machine, seconds};
-pub use table::{Report, growth};
+pub use table::{BenchReport, growth};
 
 /// What is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -133,7 +133,7 @@ pub struct Nanoseconds {
 
 /// What a case came to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Measured {
+pub struct Measurement {
     /// The case's name.
     pub case: String,
     /// "f32" or "f64".
@@ -145,7 +145,8 @@ pub struct Measured {
     /// Particles.
     pub particles: u64,
     /// Cells along 1 m.
-    pub cells_per_metre: f64,
+    #[serde(alias = "cells_per_metre")]
+    pub cells_per_meter: f64,
     /// Seconds that building the scene took.
     pub build_seconds: f64,
     /// Substeps before the runs.
@@ -196,14 +197,14 @@ pub fn scene(case: &Case, particles: Option<f64>) -> Result<Scene, SceneError> {
     let Some(particles) = particles else {
         return Ok(scene);
     };
-    // Domains' sides are whole metres: a whole number of cells along one metre fits them all.
+    // Domains' sides are whole meters: a whole number of cells along one meter fits them all.
     let finer = (particles / scene.expected_particles()).powf(1.0 / scene.dimension as f64);
-    let cells = (cells_per_metre(&scene) * finer).round().max(1.0);
+    let cells = (cells_per_meter(&scene) * finer).round().max(1.0);
     set.push(("dx".to_owned(), format!("{:?}", 1.0 / cells)));
     Scene::load(case.scene, &set)
 }
 
-fn cells_per_metre(scene: &Scene) -> f64 {
+fn cells_per_meter(scene: &Scene) -> f64 {
     (1.0 / scene.dx()).round()
 }
 
@@ -211,7 +212,7 @@ fn cells_per_metre(scene: &Scene) -> f64 {
 ///
 /// # Errors
 /// If the scene cannot be built or its simulation fails.
-pub fn measure(case: &Case, options: &Options) -> Result<Measured, BenchError> {
+pub fn measure(case: &Case, options: &Options) -> Result<Measurement, BenchError> {
     machine::forget_peak();
     let began = seconds();
     let scene = scene(case, options.particles)?;
@@ -241,7 +242,7 @@ pub fn measure(case: &Case, options: &Options) -> Result<Measured, BenchError> {
     let steps = (particles * substeps) as f64;
     let mut sorted = rates.clone();
     sorted.sort_by(f64::total_cmp);
-    Ok(Measured {
+    Ok(Measurement {
         case: case.name.to_owned(),
         precision: match scene.precision {
             Precision::F32 => "f32",
@@ -251,7 +252,7 @@ pub fn measure(case: &Case, options: &Options) -> Result<Measured, BenchError> {
         isa: isa.name().to_owned(),
         threads: rayon::current_num_threads(),
         particles,
-        cells_per_metre: cells_per_metre(&scene),
+        cells_per_meter: cells_per_meter(&scene),
         build_seconds,
         warm_up,
         min: sorted[0],

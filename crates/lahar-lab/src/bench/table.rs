@@ -2,25 +2,25 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Machine, Measured};
+use super::{Machine, Measurement};
 use crate::plot::{Line, Plot};
 
 /// What was measured, where.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Report {
+pub struct BenchReport {
     /// Version of the program.
     pub version: String,
     /// The machine.
     pub machine: Machine,
     /// The cases.
-    pub results: Vec<Measured>,
+    pub results: Vec<Measurement>,
 }
 
-impl Report {
+impl BenchReport {
     /// What a baseline says of the same case: same precision, instruction set, threads, and particles to a tenth.
-    fn same(&self, measured: &Measured) -> Option<&Measured> {
-        let alike = |other: &&Measured| {
-            let key = |m: &Measured| {
+    fn same(&self, measured: &Measurement) -> Option<&Measurement> {
+        let alike = |other: &&Measurement| {
+            let key = |m: &Measurement| {
                 (
                     m.case.clone(),
                     m.precision.clone(),
@@ -132,12 +132,12 @@ fn table(head: &[String], rows: &[Vec<String>]) -> String {
 
 /// Plots of how rate and memory grow: over particles, a line for each case and number of threads; over
 /// threads, a line for each case and number of particles. Each with its file's name.
-pub fn growth(results: &[Measured]) -> Vec<(&'static str, Plot)> {
-    let threads = |m: &Measured| format!("{}, {} thread(s)", m.case, m.threads);
-    let particles = |m: &Measured| format!("{}, {:.0e} particles", m.case, m.particles as f64);
-    let decades = |m: &Measured| (m.particles as f64).log10();
-    let rate = |m: &Measured| Some(1e-6 * m.median);
-    let memory = |m: &Measured| Some(m.memory_peak? as f64 / m.particles as f64);
+pub fn growth(results: &[Measurement]) -> Vec<(&'static str, Plot)> {
+    let threads = |m: &Measurement| format!("{}, {} thread(s)", m.case, m.threads);
+    let particles = |m: &Measurement| format!("{}, {:.0e} particles", m.case, m.particles as f64);
+    let decades = |m: &Measurement| (m.particles as f64).log10();
+    let rate = |m: &Measurement| Some(1e-6 * m.median);
+    let memory = |m: &Measurement| Some(m.memory_peak? as f64 / m.particles as f64);
     let plot = |title: &str, x_label: &str, y_label: &str, lines| Plot {
         title: title.to_owned(),
         x_label: x_label.to_owned(),
@@ -182,10 +182,10 @@ pub fn growth(results: &[Measured]) -> Vec<(&'static str, Plot)> {
 
 /// A line a name, in the order in which names come up; points by ascending x.
 fn lines(
-    results: &[Measured],
-    name: impl Fn(&Measured) -> String,
-    x: impl Fn(&Measured) -> f64,
-    y: impl Fn(&Measured) -> Option<f64>,
+    results: &[Measurement],
+    name: impl Fn(&Measurement) -> String,
+    x: impl Fn(&Measurement) -> f64,
+    y: impl Fn(&Measurement) -> Option<f64>,
 ) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     for measured in results {
@@ -214,14 +214,14 @@ mod tests {
     use super::super::Nanoseconds;
     use super::*;
 
-    fn measured(particles: u64, threads: usize, median: f64) -> Measured {
-        Measured {
+    fn measured(particles: u64, threads: usize, median: f64) -> Measurement {
+        Measurement {
             case: "dam".into(),
             precision: "f32".into(),
             isa: "portable".into(),
             threads,
             particles,
-            cells_per_metre: 10.0,
+            cells_per_meter: 10.0,
             build_seconds: 0.1,
             warm_up: 9,
             runs: vec![median],
@@ -236,8 +236,8 @@ mod tests {
         }
     }
 
-    fn report(results: Vec<Measured>) -> Report {
-        Report {
+    fn report(results: Vec<Measurement>) -> BenchReport {
+        BenchReport {
             version: "1".into(),
             machine: Machine::default(),
             results,
@@ -252,13 +252,14 @@ mod tests {
         let rows: Vec<&str> = text.lines().filter(|line| line.contains("dam")).collect();
         assert!(rows[0].ends_with(" 1.50 |"), "{text}");
         assert!(rows[1].ends_with(" - |"), "{text}");
-        let back: Report = serde_json::from_str(&serde_json::to_string(&ours).unwrap()).unwrap();
+        let back: BenchReport =
+            serde_json::from_str(&serde_json::to_string(&ours).unwrap()).unwrap();
         assert_eq!(back, ours);
     }
 
     #[test]
     fn growth_is_drawn_over_what_varies() {
-        let names = |results: &[Measured]| {
+        let names = |results: &[Measurement]| {
             growth(results)
                 .iter()
                 .map(|(name, _)| *name)

@@ -2,7 +2,7 @@
 
 use super::Case;
 use super::measure::{at, line, mean, points, root_mean_square, shifted};
-use super::running::{Series, Session, Stop};
+use super::running::{CaseError, Series, Session};
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -62,7 +62,7 @@ fn scaled(series: &[(f64, f64)], time: f64, value: f64) -> Series {
 
 const SHIFT: f64 = 0.3; // the most that may be fitted, in the time unit of the table
 
-fn d1(session: &mut Session<'_>) -> Result<(), Stop> {
+fn d1(session: &mut Session<'_>) -> Result<(), CaseError> {
     let front = points(include_str!(
         "../../data/dambreak_martin_moyce_n2_2_front_table2.csv"
     ));
@@ -141,7 +141,7 @@ fn d1(session: &mut Session<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-fn d2(session: &mut Session<'_>) -> Result<(), Stop> {
+fn d2(session: &mut Session<'_>) -> Result<(), CaseError> {
     let front = points(include_str!(
         "../../data/dambreak_koshizuka_oka_1996_front.csv"
     ));
@@ -176,7 +176,10 @@ fn d2(session: &mut Session<'_>) -> Result<(), Stop> {
 const H: f64 = 0.6;
 
 /// The readings of gauges in t sqrt(g/H) and p/(rho g H), for each resolution that is wanted.
-fn impacts(session: &mut Session<'_>, names: &[&str]) -> Result<Vec<(f64, Vec<Series>)>, Stop> {
+fn impacts(
+    session: &mut Session<'_>,
+    names: &[&str],
+) -> Result<Vec<(f64, Vec<Series>)>, CaseError> {
     let mut all = Vec::new();
     for cells in session.resolutions(30.0, 60.0) {
         let mut running = session.start(&[("dx", (H / cells).to_string())])?;
@@ -202,7 +205,7 @@ fn arrival(series: &[(f64, f64)]) -> f64 {
         .map_or(f64::NAN, |p| p.0)
 }
 
-fn d3(session: &mut Session<'_>) -> Result<(), Stop> {
+fn d3(session: &mut Session<'_>) -> Result<(), CaseError> {
     let tables = [
         (
             "P1",
@@ -263,7 +266,7 @@ fn d3(session: &mut Session<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-fn d4(session: &mut Session<'_>) -> Result<(), Stop> {
+fn d4(session: &mut Session<'_>) -> Result<(), CaseError> {
     let tables = [
         (
             "P1",
@@ -309,7 +312,7 @@ fn d4(session: &mut Session<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-fn d5(session: &mut Session<'_>) -> Result<(), Stop> {
+fn d5(session: &mut Session<'_>) -> Result<(), CaseError> {
     let table = points(include_str!("../../data/dambreak_buchner2002_pressure.csv"));
     let mut plot = vec![("experiment".to_owned(), table.clone())];
     for (cells, gauges) in impacts(session, &["B"])? {
@@ -356,7 +359,7 @@ const PASSAGE: [f64; 2] = [-0.05, 0.97];
 /// What the velocity was measured over without a gap \[s\].
 const GAUGED: [f64; 2] = [0.01, 0.6];
 
-fn d6(session: &mut Session<'_>) -> Result<(), Stop> {
+fn d6(session: &mut Session<'_>) -> Result<(), CaseError> {
     let force = since(
         &points(include_str!("../../data/dambreak_yeh_petroff_force.csv")),
         BORE[0],

@@ -4,7 +4,7 @@ use lahar::Field;
 
 use super::Case;
 use super::measure::{at, mean, order, table};
-use super::running::{Series, Session, Stop, field};
+use super::running::{CaseError, Series, Session, field};
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -41,7 +41,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-fn f3(session: &mut Session<'_>) -> Result<(), Stop> {
+fn f3(session: &mut Session<'_>) -> Result<(), CaseError> {
     starts(session, "f3-poiseuille", "Poiseuille", 2)?;
     starts(session, "f3-couette", "Couette", 3)
 }
@@ -52,7 +52,7 @@ fn starts(
     scene: &'static str,
     name: &str,
     column: usize,
-) -> Result<(), Stop> {
+) -> Result<(), CaseError> {
     let reference = table(include_str!(
         "../../data/fluid_poiseuille_couette_startup.csv"
     ));
@@ -125,7 +125,7 @@ fn layers(x: &[f64], v: &[f64], step: f64) -> Series {
     sums.into_values().map(|[y, u, n]| (y / n, u / n)).collect()
 }
 
-fn f7(session: &mut Session<'_>) -> Result<(), Stop> {
+fn f7(session: &mut Session<'_>) -> Result<(), CaseError> {
     let reference = table(include_str!(
         "../../data/fluid_elliptic_drop_monaghan1994.csv"
     ));
@@ -173,7 +173,7 @@ fn f7(session: &mut Session<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-fn f8(session: &mut Session<'_>) -> Result<(), Stop> {
+fn f8(session: &mut Session<'_>) -> Result<(), CaseError> {
     // rho omega² L² = 1000 Pa; the slowest mode of a free square has the period sqrt(2) L/c.
     let (exact, acoustic) = (-147.343, core::f64::consts::SQRT_2 / 150.0);
     let mut lines = Vec::new();
@@ -222,7 +222,7 @@ fn f8(session: &mut Session<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-fn f9(session: &mut Session<'_>) -> Result<(), Stop> {
+fn f9(session: &mut Session<'_>) -> Result<(), CaseError> {
     let mut lines = Vec::new();
     for cells in session.resolutions(10.0, 20.0) {
         let mut running = session.start(&[("dx", (0.1 / cells).to_string())])?;

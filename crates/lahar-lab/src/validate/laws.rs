@@ -6,7 +6,7 @@ use lahar::material::{
 use lahar::math::Matrix;
 
 use super::Case;
-use super::running::{Session, Stop};
+use super::running::{CaseError, Session};
 
 pub(super) const CASES: &[Case] = &[Case {
     id: "K5",
@@ -93,7 +93,7 @@ fn solids<const D: usize>(session: &mut Session<'_>, text: &str) {
     }
 }
 
-fn k5(session: &mut Session<'_>) -> Result<(), Stop> {
+fn k5(session: &mut Session<'_>) -> Result<(), CaseError> {
     solids::<2>(
         session,
         include_str!("../../data/constitutive_reference_2d.csv"),

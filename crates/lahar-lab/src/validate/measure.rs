@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn neighbours_and_crowds() {
+    fn neighbors_and_crowds() {
         let x = [0.25, 0.25, 0.75, 0.25, 1.25, 0.25, 1.25, 0.35];
         assert_eq!(to_nearest(&x, 2)[0], 0.5);
         assert!((percentile(to_nearest(&x, 2), 0.3) - 0.1).abs() < 1e-12);

@@ -5,7 +5,7 @@ use lahar::kernel::{BSpline, Cubic, Quadratic};
 use lahar::{Field, Simulate};
 
 use super::Case;
-use super::running::{Session, Stop, field};
+use super::running::{CaseError, Session, field};
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -85,13 +85,13 @@ fn moments<K: BSpline>() -> f64 {
     worst
 }
 
-fn k1(session: &mut Session<'_>) -> Result<(), Stop> {
+fn k1(session: &mut Session<'_>) -> Result<(), CaseError> {
     session.at_most("quadratic, last places of 1", moments::<Quadratic>(), 4.0);
     session.at_most("cubic, last places of 1", moments::<Cubic>(), 4.0);
     Ok(())
 }
 
-fn k2(session: &mut Session<'_>) -> Result<(), Stop> {
+fn k2(session: &mut Session<'_>) -> Result<(), CaseError> {
     for kernel in ["quadratic", "cubic"] {
         for (precision, target) in [("f64", 1e-13), ("f32", 1e-5)] {
             let set = [("kernel", kernel), ("precision", precision)];
@@ -113,7 +113,7 @@ fn k2(session: &mut Session<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-fn k3(session: &mut Session<'_>) -> Result<(), Stop> {
+fn k3(session: &mut Session<'_>) -> Result<(), CaseError> {
     for transfer in ["apic", "flip", "pic"] {
         let mut running = session.start(&[("transfer", format!("\"{transfer}\""))])?;
         let (mut momentum, mut angular) = (0.0_f64, 0.0_f64);
@@ -153,7 +153,7 @@ fn scales(simulation: &dyn Simulate) -> [f64; 2] {
     })
 }
 
-fn k4(session: &mut Session<'_>) -> Result<(), Stop> {
+fn k4(session: &mut Session<'_>) -> Result<(), CaseError> {
     let mut last = None;
     for cfl in [0.4, 0.2, 0.1] {
         let set = [("dt", "\"auto\"".to_owned()), ("cfl", cfl.to_string())];
@@ -188,7 +188,7 @@ fn k4(session: &mut Session<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-fn k6(session: &mut Session<'_>) -> Result<(), Stop> {
+fn k6(session: &mut Session<'_>) -> Result<(), CaseError> {
     let mut running = session.start(&[("dx", "0.0057150".into())])?;
     let rows = running.rows()?;
     let (first, last) = (&rows[0], &rows[rows.len() - 1]);
@@ -207,7 +207,7 @@ fn k6(session: &mut Session<'_>) -> Result<(), Stop> {
 /// taichi-dev/taichi, tests/python/test_mpm88.py, which publishes eight digits of them).
 const MPM88_MOMENTS: [f64; 4] = [0.317227613, 0.158267514, 0.102240077, 0.0781082624];
 
-fn k7(session: &mut Session<'_>) -> Result<(), Stop> {
+fn k7(session: &mut Session<'_>) -> Result<(), CaseError> {
     for (precision, target) in [("f64", 1e-8), ("f32", 1e-5)] {
         let mut running = session.start(&[("precision", format!("\"{precision}\""))])?;
         running.advance_to(0.1)?;
@@ -229,7 +229,7 @@ fn k7(session: &mut Session<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-fn k8(session: &mut Session<'_>) -> Result<(), Stop> {
+fn k8(session: &mut Session<'_>) -> Result<(), CaseError> {
     for transfer in ["apic", "flip", "pic"] {
         let mut running = session.start(&[("transfer", format!("\"{transfer}\""))])?;
         let height = |simulation: &dyn Simulate| {

@@ -8,11 +8,11 @@
 //! numbers that are not formulas are tables in data/, each with its source in its first lines.
 
 mod dam_breaks;
+mod document;
 mod flows;
 mod laws;
 mod measure;
 mod method;
-mod document;
 mod running;
 mod solids;
 mod tanks;
@@ -21,9 +21,9 @@ mod waves;
 use lahar::Isa;
 
 use crate::plot::Plot;
-use lahar_scene::error::SceneError;
 pub use document::{document, json, text};
-use running::{Session, Stop};
+use lahar_scene::error::SceneError;
+use running::{CaseError, Session};
 
 /// A case.
 pub struct Case {
@@ -37,7 +37,7 @@ pub struct Case {
     pub scene: &'static str,
     /// Whether it takes many minutes, and is run only when asked for.
     pub long: bool,
-    run: fn(&mut Session<'_>) -> Result<(), Stop>,
+    run: fn(&mut Session<'_>) -> Result<(), CaseError>,
 }
 
 /// All cases, in the order of the report.
@@ -134,8 +134,8 @@ pub fn run(
     let outcome = session.finish();
     match ended {
         Ok(()) => Ok(outcome),
-        Err(Stop::Scene(error)) => Err(*error),
-        Err(Stop::Failure(failure)) => Ok(Outcome {
+        Err(CaseError::Scene(error)) => Err(*error),
+        Err(CaseError::Failure(failure)) => Ok(Outcome {
             failure: Some(failure),
             ..outcome
         }),

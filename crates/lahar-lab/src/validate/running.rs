@@ -12,20 +12,20 @@ use lahar_scene::error::SceneError;
 use lahar_scene::scene::Scene;
 
 /// What ends a case early.
-pub(super) enum Stop {
+pub(super) enum CaseError {
     /// The scene, or what is laid over it, is wrong.
     Scene(Box<SceneError>),
     /// The simulation failed.
     Failure(String),
 }
 
-impl From<SceneError> for Stop {
+impl From<SceneError> for CaseError {
     fn from(error: SceneError) -> Self {
         Self::Scene(Box::new(error))
     }
 }
 
-impl From<Failure> for Stop {
+impl From<Failure> for CaseError {
     fn from(failure: Failure) -> Self {
         Self::Failure(failure.to_string())
     }
@@ -42,7 +42,7 @@ pub(super) struct Session<'a> {
 }
 
 /// A scene that runs.
-pub(super) struct Running {
+pub(super) struct RunningScene {
     pub(super) scene: Scene,
     driver: Driver,
     /// What probes have read so far.
@@ -92,7 +92,7 @@ impl<'a> Session<'a> {
     }
 
     /// The case's scene with `set` laid over it, and what the user laid over that.
-    pub(super) fn start(&mut self, set: &[(&str, String)]) -> Result<Running, Stop> {
+    pub(super) fn start(&mut self, set: &[(&str, String)]) -> Result<RunningScene, CaseError> {
         let scene = self
             .options
             .scene_file
@@ -106,7 +106,7 @@ impl<'a> Session<'a> {
         &mut self,
         scene: &str,
         set: &[(&str, String)],
-    ) -> Result<Running, Stop> {
+    ) -> Result<RunningScene, CaseError> {
         let own = set
             .iter()
             .map(|(key, value)| ((*key).to_owned(), value.clone()));
@@ -122,7 +122,7 @@ impl<'a> Session<'a> {
         self.outcome
             .runs
             .push(format!("{command} ({count} particles)"));
-        Ok(Running {
+        Ok(RunningScene {
             scene,
             driver,
             probes: Vec::new(),
@@ -201,7 +201,7 @@ impl<'a> Session<'a> {
     }
 }
 
-impl Running {
+impl RunningScene {
     /// The simulation.
     pub(super) fn simulation(&self) -> &dyn Simulate {
         self.driver.simulation()
@@ -213,17 +213,17 @@ impl Running {
     }
 
     /// Runs to `time` \[s\]. Substeps that fail are taken again from here with a shorter dt.
-    pub(super) fn advance_to(&mut self, time: f64) -> Result<(), Stop> {
+    pub(super) fn advance_to(&mut self, time: f64) -> Result<(), CaseError> {
         let (retries, command) = (&self.retries, &self.command);
         let told = |retry: &Retry| retries.borrow_mut().push(format!("{command}: {retry}"));
         let frame = (self.driver.advance_to(time, told))
-            .map_err(|failure| Stop::Failure(Retry::in_vain(&failure)))?;
+            .map_err(|failure| CaseError::Failure(Retry::in_vain(&failure)))?;
         self.keep_probes(frame.probes);
         Ok(())
     }
 
     /// Runs to the end of the scene's next frame.
-    pub(super) fn frame(&mut self) -> Result<(), Stop> {
+    pub(super) fn frame(&mut self) -> Result<(), CaseError> {
         loop {
             match self.driver.pump(&mut || true) {
                 Event::Frame(frame) => {
@@ -234,14 +234,17 @@ impl Running {
                     let told = format!("{}: {retry}", self.command);
                     self.retries.borrow_mut().push(told);
                 }
-                Event::Failed(failure) => return Err(Stop::Failure(Retry::in_vain(&failure))),
+                Event::Failed(failure) => return Err(CaseError::Failure(Retry::in_vain(&failure))),
                 Event::Unfinished => {}
             }
         }
     }
 
     /// Runs frame by frame to the scene's end; `look` sees the simulation at the start and after each.
-    pub(super) fn frames(&mut self, mut look: impl FnMut(&mut dyn Simulate)) -> Result<(), Stop> {
+    pub(super) fn frames(
+        &mut self,
+        mut look: impl FnMut(&mut dyn Simulate),
+    ) -> Result<(), CaseError> {
         look(self.simulation_mut());
         for _ in 0..self.scene.frames() {
             self.frame()?;
@@ -251,7 +254,7 @@ impl Running {
     }
 
     /// Runs to the scene's end; a row of totals a frame, the start's first.
-    pub(super) fn rows(&mut self) -> Result<Vec<Diagnostics>, Stop> {
+    pub(super) fn rows(&mut self) -> Result<Vec<Diagnostics>, CaseError> {
         let mut rows = Vec::new();
         self.frames(|simulation| rows.push(simulation.diagnostics()))?;
         Ok(rows)

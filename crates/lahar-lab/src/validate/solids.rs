@@ -4,7 +4,7 @@ use lahar::{Field, Simulate};
 
 use super::Case;
 use super::measure::{at, order, period, points, table};
-use super::running::{Series, Session, Stop, field};
+use super::running::{CaseError, Series, Session, field};
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -41,7 +41,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-fn e1(session: &mut Session<'_>) -> Result<(), Stop> {
+fn e1(session: &mut Session<'_>) -> Result<(), CaseError> {
     let mut errors = Vec::new();
     for dx in session.resolutions(0.5, 0.25) {
         let mut running = session.start(&[("dx", dx.to_string())])?;
@@ -91,7 +91,7 @@ fn report_order(session: &mut Session<'_>, of: &str, errors: &[f64]) {
 /// Period of the first mode (Timoshenko, both corrections) \[s\].
 const PLATE_PERIOD: f64 = 0.25647;
 
-fn e2(session: &mut Session<'_>) -> Result<(), Stop> {
+fn e2(session: &mut Session<'_>) -> Result<(), CaseError> {
     let mut errors = Vec::new();
     for cells in session.resolutions(5.0, 10.0) {
         let mut running = session.start(&[("dx", (0.02 / cells).to_string())])?;
@@ -119,7 +119,7 @@ fn e2(session: &mut Session<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-fn e3(session: &mut Session<'_>) -> Result<(), Stop> {
+fn e3(session: &mut Session<'_>) -> Result<(), CaseError> {
     let reference = points(include_str!("../../data/solid_cantilever_large_FEM.csv"));
     let deepest = |series: &Series| series.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
     let mut lines = vec![("finite elements".to_owned(), reference.clone())];
@@ -210,7 +210,7 @@ fn nearest(simulation: &dyn Simulate, place: [f64; 2]) -> usize {
     near.map_or(0, |(index, _)| index)
 }
 
-fn e4(session: &mut Session<'_>) -> Result<(), Stop> {
+fn e4(session: &mut Session<'_>) -> Result<(), CaseError> {
     let mut lines = Vec::new();
     let mut runs = vec![
         ("FLIP, dt = 1e-3 s", "e4-discs", Vec::new()),

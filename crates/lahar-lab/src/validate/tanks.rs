@@ -4,7 +4,7 @@ use lahar::{Field, Simulate};
 
 use super::Case;
 use super::measure::{mean, percentile, spread_a_cell, to_nearest};
-use super::running::{Running, Session, Stop, field};
+use super::running::{CaseError, RunningScene, Session, field};
 
 pub(super) const CASES: &[Case] = &[Case {
     id: "F4",
@@ -23,7 +23,7 @@ const GRAVITY: f64 = 9.81;
 const SUBSTEPS: u64 = 100_000;
 const QUICK_SUBSTEPS: u64 = 10_000;
 
-fn f4(session: &mut Session<'_>) -> Result<(), Stop> {
+fn f4(session: &mut Session<'_>) -> Result<(), CaseError> {
     for sampling in ["lattice", "jittered"] {
         let set = [("bodies.water.sampling", format!("\"{sampling}\""))];
         let running = session.start(&set)?;
@@ -69,7 +69,11 @@ fn f4(session: &mut Session<'_>) -> Result<(), Stop> {
 }
 
 /// What a tank at rest shows over the substeps of the case.
-fn at_rest(session: &mut Session<'_>, mut running: Running, what: &str) -> Result<(), Stop> {
+fn at_rest(
+    session: &mut Session<'_>,
+    mut running: RunningScene,
+    what: &str,
+) -> Result<(), CaseError> {
     let substeps = if session.quick() {
         QUICK_SUBSTEPS
     } else {
@@ -131,7 +135,7 @@ fn at_rest(session: &mut Session<'_>, mut running: Running, what: &str) -> Resul
 
 /// How evenly particles lie: the first percentile of the distance to the nearest other one, in cells, and the
 /// spread of the number of particles in a cell of the lower nine tenths.
-fn evenness(running: &Running) -> [f64; 2] {
+fn evenness(running: &RunningScene) -> [f64; 2] {
     let simulation: &dyn Simulate = running.simulation();
     let (d, dx) = (simulation.dimension(), simulation.dx());
     let x: Vec<f64> = field(simulation, Field::Position)
@@ -149,7 +153,7 @@ const UNCHANGED: f64 = 1e-3;
 
 fn clumping(session: &mut Session<'_>, before: [f64; 2], after: [f64; 2], what: &str) {
     session.at_least(
-        &format!("nearest neighbours, first percentile / dx, {what}"),
+        &format!("nearest neighbors, first percentile / dx, {what}"),
         before[0] - UNCHANGED,
         after[0],
     );

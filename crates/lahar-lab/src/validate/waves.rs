@@ -6,7 +6,7 @@ use lahar::Field;
 
 use super::Case;
 use super::measure::{line, order, period};
-use super::running::{Series, Session, Stop, field, mode};
+use super::running::{CaseError, Series, Session, field, mode};
 
 pub(super) const CASES: &[Case] = &[
     Case {
@@ -43,7 +43,7 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-fn f1(session: &mut Session<'_>) -> Result<(), Stop> {
+fn f1(session: &mut Session<'_>) -> Result<(), CaseError> {
     let b = -8.0 * PI * PI / 100.0;
     let mut lines = Vec::new();
     let mut errors = Vec::new();
@@ -107,7 +107,7 @@ fn f1(session: &mut Session<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-fn f2(session: &mut Session<'_>) -> Result<(), Stop> {
+fn f2(session: &mut Session<'_>) -> Result<(), CaseError> {
     let mut found = Vec::new();
     let mut lines = Vec::new();
     for dx in session.resolutions(0.025, 0.0125) {
@@ -143,7 +143,7 @@ fn f2(session: &mut Session<'_>) -> Result<(), Stop> {
     Ok(())
 }
 
-fn f5(session: &mut Session<'_>) -> Result<(), Stop> {
+fn f5(session: &mut Session<'_>) -> Result<(), CaseError> {
     let k = PI;
     let exact = TAU / (9.81 * k * k.tanh()).sqrt();
     let mut lines = Vec::new();
@@ -213,7 +213,7 @@ fn smooth(series: &[(f64, f64)], width: f64) -> Series {
     series.iter().map(|p| (p.0, mean(p.0))).collect()
 }
 
-fn f6(session: &mut Session<'_>) -> Result<(), Stop> {
+fn f6(session: &mut Session<'_>) -> Result<(), CaseError> {
     let mut errors = Vec::new();
     let cells_and_targets = if session.quick() {
         vec![40.0]

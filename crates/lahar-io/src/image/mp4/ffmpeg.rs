@@ -31,7 +31,7 @@ impl Ffmpeg {
             .args(["-f", "rawvideo", "-pixel_format", "rgb24"])
             .args(["-video_size", &format!("{}x{}", first.width, first.height)])
             .args(["-framerate", &format!("{rate:?}"), "-i", "-"])
-            // Players want both sides even and colours in half the resolution.
+            // Players want both sides even and colors in half the resolution.
             .args([
                 "-vf",
                 "pad=ceil(iw/2)*2:ceil(ih/2)*2",

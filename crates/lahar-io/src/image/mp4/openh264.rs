@@ -83,7 +83,7 @@ impl OpenH264 {
     }
 }
 
-/// The picture with both sides even, its last column and row twice where they were not: H.264 halves colours.
+/// The picture with both sides even, its last column and row twice where they were not: H.264 halves colors.
 fn even(picture: &Picture) -> (Vec<u8>, (usize, usize)) {
     let (width, height) = (picture.width as usize, picture.height as usize);
     let row_at = |row: usize| &picture.rgb[3 * width * row.min(height - 1)..][..3 * width];
