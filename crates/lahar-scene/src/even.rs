@@ -16,8 +16,8 @@ mod pieces;
 mod sorted;
 
 use crate::parallel::*;
-use crate::shape::Region;
 use lahar::Kernel;
+use lahar::geometry::Region;
 use lahar::kernel::{BSpline, Cubic, Linear, Quadratic};
 use nodes::{Lattice, Nodes};
 use sorted::Sorted;
@@ -74,8 +74,8 @@ fn even<K: BSpline, const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sampling::{Random, Sampling, sample};
-    use crate::shape::{Bounds, Shape};
+    use lahar::geometry::sampling::{Random, Sampling, sample};
+    use lahar::geometry::{Bounds, Shape};
 
     /// The standard deviation of how full the nodes well inside are.
     fn unevenness(region: &Region<2>, position: &[[f64; 2]], volume: &[f64], dx: f64) -> f64 {

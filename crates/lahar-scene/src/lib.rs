@@ -14,6 +14,4 @@ pub mod npz;
 mod parallel;
 pub mod particle_list;
 pub mod ply;
-pub mod sampling;
 pub mod scene;
-pub mod shape;

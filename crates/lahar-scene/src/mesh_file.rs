@@ -2,7 +2,7 @@
 
 use crate::error::SceneError;
 use crate::particle_list::Lines;
-use crate::shape::{Mesh, MeshError};
+use lahar::geometry::{Mesh, MeshError};
 
 /// Corners, and faces by the numbers of theirs.
 type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);

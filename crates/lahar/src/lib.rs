@@ -6,6 +6,7 @@ mod dispatch;
 pub mod error;
 mod float_mode;
 pub mod forces;
+pub mod geometry;
 mod grid;
 mod instance;
 pub mod kernel;
@@ -23,11 +24,12 @@ mod step;
 mod transfer;
 
 pub use boundary::{
-    BoundaryImpulse, Collider, Contact, Corners, Cushion, Domain, Keyframe, Motion, Sides, Solid,
+    BoundaryImpulse, Collider, Contact, Corners, Cushion, Domain, Keyframe, Motion, Sides,
     WallStyle,
 };
 pub use error::{DtLimit, Failure, SetupError};
 pub use forces::{AccelerationField, Force, Pull};
+pub use geometry::Solid;
 pub use instance::Instance;
 pub use material::{Material, Model};
 pub use particles::{Data, Field, Snapshot};

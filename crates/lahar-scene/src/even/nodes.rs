@@ -1,6 +1,6 @@
 //! The nodes around a shape, and where among them a place is.
 
-use crate::shape::Bounds;
+use lahar::geometry::Bounds;
 use lahar::kernel::BSpline;
 use lahar::math::Real;
 

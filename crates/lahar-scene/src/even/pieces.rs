@@ -5,8 +5,8 @@
 
 use super::nodes::{Lattice, Nodes};
 use crate::parallel::*;
-use crate::sampling::lattice_size;
-use crate::shape::Region;
+use lahar::geometry::Region;
+use lahar::geometry::sampling::lattice_size;
 use lahar::kernel::{BSpline, STENCIL};
 
 /// Pieces along dx.

@@ -4,8 +4,8 @@ use super::forces::lattice;
 use super::plan::{Body, Plan, Source, Volume};
 use crate::even::even_volumes;
 use crate::parallel::*;
-use crate::sampling::{Random, Sampling, sample};
 use lahar::boundary::Placed;
+use lahar::geometry::sampling::{Random, Sampling, sample};
 use lahar::material::Fluid;
 use lahar::{Collider, Deformation, Model, ParticleBatch, Setup};
 

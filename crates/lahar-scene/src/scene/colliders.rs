@@ -7,7 +7,7 @@ use super::plan::contact_with_friction;
 use super::read::Reader;
 use super::shapes::read_shape;
 use crate::error::SceneError;
-use crate::shape::Shape;
+use lahar::geometry::Shape;
 use lahar::{Collider, Contact, Keyframe, Motion, Solid};
 
 /// Names that sides of the domain have.

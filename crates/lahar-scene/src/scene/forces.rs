@@ -3,7 +3,7 @@
 use super::formula::{Formulas, Of};
 use super::read::Reader;
 use crate::error::SceneError;
-use crate::shape::Bounds;
+use lahar::geometry::Bounds;
 use lahar::{Force, Pull};
 use std::sync::Arc;
 

@@ -3,9 +3,9 @@
 
 use super::plan::{Body, Plan};
 use crate::parallel::*;
-use crate::sampling::Random;
-use crate::shape::Shape;
 use core::ops::Range;
+use lahar::geometry::Shape;
+use lahar::geometry::sampling::Random;
 use lahar::{Deformation, ParticleBatch};
 
 /// Particles handed on together.

@@ -10,8 +10,8 @@ use super::stiffness::{Falls, Stiffness};
 use super::{Files, Limits};
 use crate::error::{SceneError, nearest};
 use crate::particle_list::ParticleList;
-use crate::sampling::{Sampling, expected_count};
-use crate::shape::{Bounds, Region, Shape};
+use lahar::geometry::sampling::{Sampling, expected_count};
+use lahar::geometry::{Bounds, Region, Shape};
 use lahar::material::{
     Corotated, Dust, Eos, Fluid, HardeningFrom, HerschelBulkley, JacobianUpdate, NeoHookean,
     Rheology, Snow, ViscousStress, VolumeCorrection, VolumeRule, lame, rheology::CREEP_RATE,

@@ -5,8 +5,8 @@ use super::files::Files;
 use super::plan::{AXES, Source, point};
 use super::read::Reader;
 use crate::error::SceneError;
-use crate::sampling::Sampling;
-use crate::shape::{Bounds, Motion, Region, Shape, area, crossing};
+use lahar::geometry::sampling::Sampling;
+use lahar::geometry::{Bounds, Motion, Region, Shape, area, crossing};
 use std::sync::Arc;
 
 /// Primitive shapes in one body at the most: each is asked about every particle.

@@ -5,7 +5,7 @@ use super::plan::{Body, Plan};
 use super::read::Reader;
 use super::three;
 use crate::error::SceneError;
-use crate::shape::Bounds;
+use lahar::geometry::Bounds;
 use lahar::{Command, Model, TimeStep};
 
 /// How a fluid's stiffness is given.

@@ -1,8 +1,8 @@
 //! Solid bodies that stand or move as they are told: shape, contact and motion, as plain data.
 
 use super::Contact;
-use super::solid::{Solid, rotation};
 use crate::error::SetupError;
+use crate::geometry::{Solid, rotation};
 use crate::math::{Matrix, Vector};
 
 /// A body that stops the material and is not moved by it.

@@ -5,13 +5,11 @@ pub(crate) mod contact;
 pub(crate) mod impulse;
 pub(crate) mod pointer;
 mod rooted;
-mod solid;
 pub(crate) mod surface;
 pub(crate) mod walls;
 
 pub use collider::{Collider, Keyframe, Motion, Placed};
 pub use impulse::BoundaryImpulse;
-pub use solid::Solid;
 
 /// The box that holds a scene.
 #[derive(Clone, Debug, PartialEq)]

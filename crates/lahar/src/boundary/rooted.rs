@@ -9,8 +9,8 @@
 //! nearer to it than to the others.
 
 use super::collider::{Collider, Motion};
-use super::solid::Solid;
 use super::walls::Walls;
+use crate::geometry::Solid;
 use crate::math::Vector;
 
 /// A face is on a side if it is no farther from it than this \[cells\].

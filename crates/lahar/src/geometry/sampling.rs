@@ -1,7 +1,7 @@
 //! Where the particles of a body are at the start. The same seed gives the same positions, on every
 //! machine.
 
-use crate::shape::Region;
+use super::Region;
 
 /// How positions are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -204,7 +204,7 @@ fn poisson<const D: usize>(region: &Region<D>, count: usize, random: &mut Random
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shape::{Bounds, Shape};
+    use crate::geometry::{Bounds, Shape};
 
     const ALL: [Sampling; 4] = [
         Sampling::Lattice,

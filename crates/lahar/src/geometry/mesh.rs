@@ -421,7 +421,7 @@ mod tests {
         }
         let mesh = Mesh::new(vertices, faces).unwrap();
         let exact = mesh.exact_volume().unwrap();
-        let mut random = crate::sampling::Random::new(1, 2);
+        let mut random = crate::geometry::sampling::Random::new(1, 2);
         let inside = (0..200_000)
             .filter(|_| mesh.contains(core::array::from_fn(|_| 2.0 * random.unit() - 1.0)))
             .count();

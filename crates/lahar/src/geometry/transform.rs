@@ -92,7 +92,7 @@ impl<const D: usize> Motion<D> {
 
 impl<const D: usize> Bounds<D> {
     /// Its middle \[m\]; 0 where it has no end.
-    pub(crate) fn middle(&self) -> [f64; D] {
+    pub fn middle(&self) -> [f64; D] {
         core::array::from_fn(|i| {
             let middle = 0.5 * (self.min[i] + self.max[i]);
             if middle.is_finite() { middle } else { 0.0 }

@@ -212,7 +212,7 @@ pub(super) fn clip_polygon<const D: usize>(points: &[[f64; D]], clip: &Bounds<D>
 }
 
 /// Area of a polygon \[m²\], positive if counter-clockwise.
-pub(crate) fn area<const D: usize>(points: &[[f64; D]]) -> f64 {
+pub fn area<const D: usize>(points: &[[f64; D]]) -> f64 {
     let Some(origin) = points.first() else {
         return 0.0;
     };

@@ -1,14 +1,13 @@
 //! Shapes as the simulator's colliders have them.
 
-use super::{Motion, Shape};
-use lahar::Solid;
+use super::{Motion, Shape, Solid};
 
 impl<const D: usize> Shape<D> {
     /// The simple solids that it is made of; all that is in any of them is in the shape.
     ///
     /// # Errors
     /// What of it is no such solid.
-    pub(crate) fn solids(&self) -> Result<Vec<Solid<D>>, &'static str> {
+    pub fn solids(&self) -> Result<Vec<Solid<D>>, &'static str> {
         let one = |solid| Ok(vec![solid]);
         match self {
             Self::Box { min, max } => one(Solid::Box {

@@ -1,16 +1,20 @@
 //! The space that a body fills: a shape, cut off at the domain.
 
 mod mesh;
-mod motion;
-mod solids;
+mod parts;
+mod primitive;
+pub mod sampling;
+mod transform;
 mod volume;
 
 pub use mesh::{Mesh, MeshError};
-pub use motion::Motion;
+pub use primitive::Solid;
+pub(crate) use primitive::rotation;
+pub use transform::Motion;
 
 use core::f64::consts::PI;
 use std::sync::Arc;
-pub(crate) use volume::area;
+pub use volume::area;
 use volume::{
     ball_volume, clip_polygon, clipped_ball, counted, half_space_bounds, half_space_volume,
 };
@@ -92,7 +96,7 @@ impl<const D: usize> Bounds<D> {
     };
 
     /// The smallest box around all of `boxes`.
-    pub(crate) fn around(boxes: &[Self]) -> Self {
+    pub fn around(boxes: &[Self]) -> Self {
         let nothing = Self {
             min: [f64::INFINITY; D],
             max: [f64::NEG_INFINITY; D],
@@ -377,7 +381,7 @@ impl<const D: usize> Shape<D> {
     }
 
     /// Primitive shapes in it.
-    pub(crate) fn parts(&self) -> usize {
+    pub fn parts(&self) -> usize {
         match self {
             Self::Union(shapes) | Self::Intersection(shapes) | Self::Difference(shapes) => {
                 shapes.iter().map(Self::parts).sum()
@@ -452,7 +456,7 @@ impl<const D: usize> Region<D> {
     }
 
     /// Whether it is known to have all that is between any two of its points.
-    pub(crate) fn is_convex(&self) -> bool {
+    pub fn is_convex(&self) -> bool {
         self.shape.is_convex()
     }
 }
@@ -494,7 +498,7 @@ fn in_polygon<const D: usize>(points: &[[f64; D]], p: &[f64; D]) -> bool {
 }
 
 /// The first two sides of a polygon that cross, by the numbers of their first corners.
-pub(crate) fn crossing<const D: usize>(points: &[[f64; D]]) -> Option<(usize, usize)> {
+pub fn crossing<const D: usize>(points: &[[f64; D]]) -> Option<(usize, usize)> {
     let n = points.len();
     let turn = |a: [f64; D], b: [f64; D], c: [f64; D]| {
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
