@@ -1,14 +1,14 @@
-//! What the window knows and decides, without a window: actions, pointer and snapshots in; orders to
-//! the solver and a picture out. Tests drive it as a hand would.
+//! The state of the window, and its decisions. It needs no window itself: actions, mouse and snapshots come in; orders
+//! to the solver and pictures go out. Tests drive it as a person would.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
 use eframe::egui::{self, Color32};
-use lahar::Command;
+use lahar::{Command, Pointer};
 use lahar_scene::scene::{Comparison, Controls};
 
-use crate::camera::{Camera, V3, length, scale};
+use crate::camera::{Camera, V3, add, dot, length, scale, sub};
 use crate::color::{self, ColorBy, Range};
 use crate::compare::ComparisonDraft;
 use crate::controls::{Action, Direction};
@@ -16,12 +16,12 @@ use crate::pointer::{PointerMode, PointerTool};
 use crate::renderer::{Line, Picture, Sprites, View};
 use crate::scenery::{Scenery, sprites, usual_radius};
 use crate::scenes::{Changes, SceneCard, SceneInfo, Setting};
-use crate::solver::{Condition, Order, Readouts, SceneRequest, Shown, Side};
+use crate::solver::{Condition, Order, Readouts, SceneRequest, Side, SolverState};
 
-/// What the window must do for the state.
+/// Work that only the window itself can do.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Effect {
-    /// Send to the solver.
+    /// Send an order to the solver.
     Order(Order),
     /// Save the window as a picture.
     Screenshot,
@@ -31,90 +31,110 @@ pub enum Effect {
     Close,
 }
 
-/// All of it.
+/// A message over the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Notice {
+    /// The message.
+    pub text: String,
+    /// When it disappears \[s of egui's clock\].
+    pub until: f64,
+}
+
+/// The search in the list of scenes.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SceneSearch {
+    /// The words typed.
+    pub text: String,
+    /// The place of the scene that Enter opens, among those found.
+    pub chosen: usize,
+}
+
+/// Everything that the window knows, and what it will do next.
 pub struct AppState {
     /// The scenes to choose from.
     pub scenes: Vec<SceneCard>,
-    /// What [`Action::DefaultScene`] opens.
+    /// The scene that [`Action::DefaultScene`] opens.
     pub default_scene: String,
     /// The open scene, by name or path.
     pub scene: String,
-    /// The scene's settings as the panel has them; they hold from [`AppState::apply_settings`] on.
+    /// The scene's settings as the panel shows them. [`AppState::apply_settings`] puts them into effect.
     pub settings: Vec<Setting>,
-    /// Whether the clock stands.
+    /// True while the simulation is paused.
     pub paused: bool,
-    /// Simulated seconds per second, at most.
+    /// The largest speed, in simulated seconds per second.
     pub speed: f64,
-    /// Gravity now \[m/s²\].
+    /// The present gravity \[m/s²\].
     pub gravity: V3,
-    /// What particles are colored by.
+    /// The quantity that particles are colored by.
     pub color_by: ColorBy,
     /// Colors of the scene's swatches, by index.
     pub palette: Vec<Color32>,
-    /// The color behind everything.
+    /// The background color.
     pub background: Color32,
-    /// Low and high end of the legend.
+    /// The range of the legend.
     pub range: Range,
-    /// Radius of a particle, in parts of its spacing, or of the scene's own radius.
+    /// Radius of a particle as drawn, in parts of its spacing or of the scene's own radius.
     pub radius: f32,
-    /// The hand.
-    pub hand: PointerTool,
-    /// Where the hand is \[m\] and what it does, while a button holds it.
-    pub held: Option<(V3, PointerMode)>,
-    /// Whether the list of scenes is open.
+    /// The mouse pointer as a tool that stirs the particles.
+    pub pointer_tool: PointerTool,
+    /// The pointer's place \[m\] and mode while a mouse button is pressed in the scene.
+    pub pressed: Option<(V3, PointerMode)>,
+    /// True while the list of scenes is open.
     pub show_scenes: bool,
-    /// Frames tried again that have been told of.
-    pub(crate) told_retries: u64,
-    /// What was typed to find a scene, and which of those found Enter opens.
-    pub search: (String, usize),
-    /// Small pictures of the scenes, by name; they come one by one.
+    /// The number of retries that the person at the window was told of.
+    seen_retries: u64,
+    /// The search in the list of scenes.
+    pub search: SceneSearch,
+    /// Small pictures of the scenes, by name. They arrive one by one.
     pub thumbnails: HashMap<String, egui::TextureHandle>,
-    /// Whether the hints are in sight.
+    /// True while the key hints are shown.
     pub show_hints: bool,
-    /// Whether the side panel is in sight.
+    /// True while the side panel is shown.
     pub show_panel: bool,
-    /// The camera; `None` before the first particles.
+    /// The camera; `None` before the first scene is built.
     pub camera: Option<Camera>,
-    /// A word on what happened, and when it is to go \[s of egui's clock\].
-    pub notice: Option<(String, f64)>,
-    /// Width over height of where a side is drawn.
+    /// The message over the scene.
+    pub notice: Option<Notice>,
+    /// Width over height of the area that a side is drawn in.
     pub aspect: f64,
-    /// What would be compared.
+    /// The comparison that the panel is putting together.
     pub draft: ComparisonDraft,
-    /// Whether the view was turned, moved or zoomed; if not, it follows the window's size.
+    /// True once the person has turned, moved or zoomed the view. Until then it follows the window's size.
     pub view_is_own: bool,
     pub(crate) scenery: Scenery,
-    /// The scenery's lines and the colliders' of each side; none without colliders.
+    /// The lines of the scenery and the colliders, per side; empty without colliders.
     lines: Vec<Arc<Vec<Line>>>,
-    /// Particles to draw, by side.
+    /// The particles to draw, per side.
     pub(crate) sprites: Vec<Arc<Sprites>>,
-    /// The direction that gravity has while its key is held, in scenes that want it so.
-    pub(crate) held_gravity: Option<Direction>,
+    /// The gravity key that is down, in scenes where gravity acts only meanwhile.
+    pub(crate) gravity_key: Option<Direction>,
 
     changes: Changes,
     comparison: Option<Comparison>,
-    shown: Shown,
+    solver: SolverState,
     effects: Vec<Effect>,
-    recolor: bool,
-    refit: bool,
+    /// True if sprites and lines do not show the newest state.
+    sprites_are_outdated: bool,
+    /// True if the view is to be fitted to the next scene that opens.
+    fit_when_opened: bool,
     asked_for_thumbnails: bool,
 }
 
-/// Speeds that + and − step through.
+/// The speeds that the keys + and − step through, in simulated seconds per second.
 pub(crate) const SPEEDS: [f64; 16] = [
     0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0, 1.5, 2.0, 4.0, 8.0,
 ];
-/// Gravity of a scene that has none, when keys ask for some \[m/s²\].
-const EARTH: f64 = 9.81;
-/// Frames of a recording that the arrows up and down pass over.
+/// The gravity that keys turn in a scene without gravity \[m/s²\].
+const EARTH_GRAVITY: f64 = 9.81;
+/// Frames of a recording that the arrow keys up and down skip.
 const FAR: isize = 10;
-/// What a key turns or moves the view by, in parts of the window's height.
+/// The distance that a key turns or moves the view by, in parts of the window's height.
 const STEP: f64 = 0.05;
-/// What a key enlarges by.
+/// The factor that a key enlarges by.
 const ZOOM: f64 = 1.15;
 
 impl AppState {
-    /// Opens a scene, `wanted` or the default one.
+    /// Orders a scene, `wanted` or the default one.
     pub fn new(scenes: Vec<SceneCard>, default_scene: &str, wanted: Option<SceneRequest>) -> Self {
         let wanted = wanted.unwrap_or_else(|| SceneRequest {
             scene: default_scene.to_owned(),
@@ -133,13 +153,13 @@ impl AppState {
             background: color::BACKGROUND,
             range: Range::default(),
             radius: 1.0,
-            hand: PointerTool::of(Controls::default(), EARTH, 1.0, 0.01),
-            held: None,
+            pointer_tool: PointerTool::of(Controls::default(), EARTH_GRAVITY, 1.0, 0.01),
+            pressed: None,
             show_scenes: false,
-            told_retries: 0,
-            search: (String::new(), 0),
+            seen_retries: 0,
+            search: SceneSearch::default(),
             thumbnails: HashMap::new(),
-            // They would lie over one of the sides.
+            // Hints would cover one of the sides.
             show_hints: wanted.comparison.is_none(),
             show_panel: true,
             camera: None,
@@ -150,63 +170,63 @@ impl AppState {
             scenery: Scenery::default(),
             lines: vec![],
             sprites: vec![],
-            held_gravity: None,
+            gravity_key: None,
             changes: wanted.changes,
             comparison: wanted.comparison,
-            shown: Shown::default(),
+            solver: SolverState::default(),
             effects: vec![],
-            recolor: false,
-            refit: true,
+            sprites_are_outdated: false,
+            fit_when_opened: true,
             asked_for_thumbnails: false,
         };
         state.reopen();
         state
     }
 
-    /// What the window must do, since last asked.
+    /// Takes the work that the window must do.
     pub fn take_effects(&mut self) -> Vec<Effect> {
         core::mem::take(&mut self.effects)
     }
 
-    /// What the solver showed last.
-    pub fn shown(&self) -> &Shown {
-        &self.shown
+    /// The newest state of the solver.
+    pub fn solver(&self) -> &SolverState {
+        &self.solver
     }
 
-    /// What stays the same while the scene runs.
+    /// The open scene; `None` before the first one is built.
     pub fn info(&self) -> Option<&SceneInfo> {
-        self.shown.info.as_deref()
+        self.solver.info.as_deref()
     }
 
-    /// What runs side by side: one as a rule; none before the first scene is built.
+    /// The simulations side by side: one as a rule, none before the first scene is built.
     pub fn sides(&self) -> &[Side] {
-        &self.shown.sides
+        &self.solver.sides
     }
 
-    /// Numbers of the first side.
+    /// The numbers of the first side.
     pub fn readouts(&self) -> Readouts {
-        (self.shown.sides.first()).map_or_else(Readouts::default, |side| side.readouts)
+        (self.solver.sides.first()).map_or_else(Readouts::default, |side| side.readouts)
     }
 
-    /// Frames of the recording that is replayed; `None`: the scene is simulated.
+    /// The number of frames of the recording that is replayed; `None` for a simulation.
     pub fn recorded_frames(&self) -> Option<usize> {
         self.info().and_then(|info| info.frames)
     }
 
-    /// What is compared.
+    /// The comparison that runs.
     pub fn comparison(&self) -> Option<&Comparison> {
         self.comparison.as_ref()
     }
 
-    /// Why the solver stopped, if it did.
+    /// The reason why the solver stopped, if it did.
     pub fn failure(&self) -> Option<&str> {
-        match &self.shown.condition {
+        match &self.solver.condition {
             Condition::Failed(why) => Some(why),
             _ => None,
         }
     }
 
-    /// Does what a key or a button asks for.
+    /// Carries out the action of a key or a button.
     pub fn act(&mut self, action: Action) {
         match action {
             Action::Restart => self.restart(),
@@ -219,7 +239,10 @@ impl AppState {
             Action::SceneList => {
                 self.show_scenes = !self.show_scenes;
                 let here = self.scenes.iter().position(|card| card.name == self.scene);
-                self.search = (String::new(), here.unwrap_or(0));
+                self.search = SceneSearch {
+                    text: String::new(),
+                    chosen: here.unwrap_or(0),
+                };
                 if !core::mem::replace(&mut self.asked_for_thumbnails, true) {
                     self.effects.push(Effect::Thumbnails);
                 }
@@ -237,7 +260,7 @@ impl AppState {
                 let axis = self.axis(direction);
                 self.set_gravity(scale(axis, pull));
             }
-            Action::Pause if self.shown.condition == Condition::Ended => {
+            Action::Pause if self.solver.condition == Condition::Ended => {
                 self.set_paused(false);
                 self.restart();
             }
@@ -278,11 +301,11 @@ impl AppState {
         }
     }
 
-    /// Opens a scene by name or path, alone and as it is.
+    /// Opens a scene by name or path, without changes or comparison.
     pub fn open(&mut self, name: String) {
         self.scene = name;
         self.show_scenes = false;
-        self.refit = true;
+        self.fit_when_opened = true;
         self.changes.clear();
         self.comparison = None;
         self.reopen();
@@ -300,22 +323,22 @@ impl AppState {
         self.order(Order::Restart);
     }
 
-    /// Runs the scene with several values of a key side by side, or alone again.
+    /// Runs the scene with several values of a key side by side, or alone again if `None`.
     pub fn compare(&mut self, comparison: Option<Comparison>) {
         self.comparison = comparison;
         self.show_hints &= self.comparison.is_none();
-        self.refit = true;
+        self.fit_when_opened = true;
         self.reopen();
     }
 
-    /// Compares what the panel has.
+    /// Runs the comparison that the panel has put together.
     pub fn compare_draft(&mut self) {
         if let Some(comparison) = self.draft.comparison() {
             self.compare(Some(comparison));
         }
     }
 
-    /// Opens the scene anew with the settings of the panel.
+    /// Reopens the scene with the settings of the panel.
     pub fn apply_settings(&mut self) {
         let before = self.info().map_or(&[][..], |info| &info.settings);
         let changed = self.settings.iter().filter(|new| {
@@ -332,18 +355,18 @@ impl AppState {
         self.reopen();
     }
 
-    /// Opens the scene as its file has it.
+    /// Reopens the scene with the settings of its file.
     pub fn forget_settings(&mut self) {
         self.changes.clear();
         self.reopen();
     }
 
-    /// Whether the scene runs with changes.
+    /// True if the scene runs with settings other than its file's.
     pub fn has_changes(&self) -> bool {
         !self.changes.is_empty()
     }
 
-    /// Stops the clock, or lets it run.
+    /// Pauses the simulation, or lets it run.
     pub fn set_paused(&mut self, paused: bool) {
         if self.paused != paused {
             self.paused = paused;
@@ -351,7 +374,7 @@ impl AppState {
         }
     }
 
-    /// Simulated seconds per second, at most.
+    /// Sets the largest speed, in simulated seconds per second.
     pub fn set_speed(&mut self, speed: f64) {
         self.speed = speed.clamp(SPEEDS[0], SPEEDS[SPEEDS.len() - 1]);
         self.order(Order::Speed(self.speed));
@@ -359,48 +382,48 @@ impl AppState {
 
     /// Replaces gravity \[m/s²\].
     pub fn set_gravity(&mut self, gravity: V3) {
-        let gravity = gravity.map(|c| c + 0.0); // no -0
+        let gravity = gravity.map(|c| c + 0.0); // turns -0 into 0
         self.gravity = gravity;
         self.order(Order::Command(Command::Gravity(gravity)));
     }
 
-    /// What particles are colored by.
+    /// Colors particles by another quantity.
     pub fn set_color_by(&mut self, by: ColorBy) {
         self.color_by = by;
-        self.recolor = true;
+        self.sprites_are_outdated = true;
         self.order(Order::Fields(by.fields()));
     }
 
-    /// Colors of the materials were changed.
-    pub fn repaint(&mut self) {
-        self.recolor = true;
+    /// Draws particles anew, after a change of the palette.
+    pub fn palette_changed(&mut self) {
+        self.sprites_are_outdated = true;
     }
 
-    /// The magnitude of gravity that keys turn \[m/s²\].
+    /// The size of the gravity that keys turn \[m/s²\].
     pub fn scene_gravity(&self) -> f64 {
         let info = self.info();
         let own = info.map_or(0.0, |info| length(info.gravity));
         let keys = info.and_then(|info| info.controls.gravity);
-        keys.unwrap_or(if own > 0.0 { own } else { EARTH })
+        keys.unwrap_or(if own > 0.0 { own } else { EARTH_GRAVITY })
     }
 
-    /// Whether gravity acts while a key is held, and none after.
-    pub fn holds_gravity(&self) -> bool {
+    /// True if the scene has gravity only while a gravity key is down.
+    pub fn gravity_needs_key(&self) -> bool {
         self.info().is_some_and(|info| info.controls.hold)
     }
 
-    /// The direction whose key is held, where [`AppState::holds_gravity`].
-    pub fn hold_gravity(&mut self, held: Option<Direction>) {
-        if self.held_gravity != held {
-            self.held_gravity = held;
-            let gravity = held.map_or([0.0; 3], |direction| {
+    /// Sets the gravity key that is down, where [`AppState::gravity_needs_key`].
+    pub fn set_gravity_key(&mut self, key: Option<Direction>) {
+        if self.gravity_key != key {
+            self.gravity_key = key;
+            let gravity = key.map_or([0.0; 3], |direction| {
                 scale(self.axis(direction), self.scene_gravity())
             });
             self.set_gravity(gravity);
         }
     }
 
-    /// To a frame of the recording, which then stands.
+    /// Goes to a frame of the recording and pauses there.
     pub fn seek(&mut self, frame: usize) {
         self.set_paused(true);
         self.order(Order::Seek(frame));
@@ -413,7 +436,7 @@ impl AppState {
         }
     }
 
-    /// A direction of the window as an axis of the scene.
+    /// The axis of the scene, with its sign, that is nearest to a direction of the window.
     fn axis(&self, direction: Direction) -> V3 {
         let (right, up) = self
             .camera
@@ -429,40 +452,40 @@ impl AppState {
         }
     }
 
-    /// Takes in what the solver shows.
-    pub fn receive(&mut self, shown: Shown) {
-        let opened = shown.opened != self.shown.opened;
+    /// Takes over the newest state of the solver.
+    pub fn receive(&mut self, state: SolverState) {
+        let opened = state.opened != self.solver.opened;
         let scene_before = self.info().map(|info| info.card.name.clone());
-        self.shown = shown;
-        if opened && let Some(info) = self.shown.info.clone() {
+        self.solver = state;
+        if opened && let Some(info) = self.solver.info.clone() {
             self.gravity = info.gravity;
-            self.held_gravity = None;
+            self.gravity_key = None;
             self.settings.clone_from(&info.settings);
             self.draft.offer(&info.settings, self.comparison.as_ref());
             self.range.forget();
             let snapshot = self.sides().first().map(|side| Arc::clone(&side.snapshot));
             self.scenery = Scenery::new(&info, snapshot.as_deref());
             if scene_before.as_ref() != Some(&info.card.name) {
-                self.look_anew(&info, scene_before.is_none());
+                self.adopt_look(&info, scene_before.is_none());
             }
-            if core::mem::take(&mut self.refit) {
+            if core::mem::take(&mut self.fit_when_opened) {
                 self.fit();
             }
         }
-        self.recolor = true;
+        self.sprites_are_outdated = true;
     }
 
-    /// Another scene: its own colors, its own hand.
-    fn look_anew(&mut self, info: &SceneInfo, first: bool) {
+    /// Adopts the colors, the pointer tool and the speed of another scene.
+    fn adopt_look(&mut self, info: &SceneInfo, first: bool) {
         let by = info.angle.color_by;
-        // What was chosen stays, unless the scene asks for something.
+        // The person's choice stays, unless the scene asks for a quantity.
         if self.color_by != by && (first || by != ColorBy::Material) {
             self.set_color_by(by);
         }
         self.palette = color::palette(&info.swatches);
         self.background = color::background(info);
         self.radius = usual_radius(info);
-        self.hand = PointerTool::of(
+        self.pointer_tool = PointerTool::of(
             info.controls,
             self.scene_gravity(),
             self.scenery.smallest(info.dimension),
@@ -473,7 +496,7 @@ impl AppState {
         }
     }
 
-    /// The view that the scene asks for, or the whole of it.
+    /// Shows the view that the scene asks for, or else the whole scene.
     fn fit(&mut self) {
         let Some(info) = self.info() else { return };
         let camera = Camera::fit(
@@ -487,7 +510,7 @@ impl AppState {
         self.view_is_own = false;
     }
 
-    /// The room for a side has this width over height.
+    /// Sets width over height of the area that a side is drawn in.
     pub fn set_aspect(&mut self, aspect: f64) {
         if (self.aspect - aspect).abs() > 1e-6 {
             self.aspect = aspect;
@@ -524,10 +547,10 @@ impl AppState {
         }
     }
 
-    /// What is to be drawn of a side, on so many pixels.
+    /// The picture of a side, of this width and height in pixels.
     pub fn picture(&mut self, side: usize, pixels: [f32; 2]) -> Option<Picture> {
-        if self.recolor {
-            self.recolor = false;
+        if self.sprites_are_outdated {
+            self.sprites_are_outdated = false;
             self.make_sprites();
         }
         let camera = self.camera.as_ref()?;
@@ -547,25 +570,25 @@ impl AppState {
         })
     }
 
-    /// The lines of each side's moment, if there are colliders.
+    /// Makes the lines of each side at its own time, if there are colliders.
     fn make_lines(&mut self) {
-        let Some(info) = (self.shown.info.as_ref()).filter(|f| !f.colliders.is_empty()) else {
+        let Some(info) = (self.solver.info.as_ref()).filter(|f| !f.colliders.is_empty()) else {
             self.lines.clear();
             return;
         };
-        self.lines = (self.shown.sides.iter())
+        self.lines = (self.solver.sides.iter())
             .map(|side| self.scenery.lines_at(info, side.snapshot.time))
             .collect();
     }
 
     fn make_sprites(&mut self) {
         self.make_lines();
-        let Some(info) = &self.shown.info else {
+        let Some(info) = &self.solver.info else {
             return;
         };
         let by = self.color_by;
-        let snapshots = || self.shown.sides.iter().map(|side| &*side.snapshot);
-        // One legend for all sides.
+        let snapshots = || self.solver.sides.iter().map(|side| &*side.snapshot);
+        // All sides share one legend.
         self.range
             .follow(by, snapshots().filter_map(|s| by.values(s)));
         let colors = (by, self.palette.as_slice(), &self.range);
@@ -574,21 +597,75 @@ impl AppState {
             .collect();
     }
 
-    /// Says something for a few seconds; `now` by egui's clock.
-    pub fn say(&mut self, what: String, now: f64) {
+    /// Shows a message for a few seconds, from `now` on \[s of egui's clock\].
+    pub fn notify(&mut self, text: String, now: f64) {
         const SECONDS: f64 = 6.0;
-        self.notice = Some((what, now + SECONDS));
+        let until = now + SECONDS;
+        self.notice = Some(Notice { text, until });
     }
 
-    /// Says it when a frame had to be tried again.
-    pub(crate) fn tell_retries(&mut self, now: f64) {
-        let tried = |side: &Side| side.readouts.retries;
-        let retries = self.shown.sides.iter().map(tried).sum();
-        let before = core::mem::replace(&mut self.told_retries, retries);
-        let latest = self.shown.sides.iter().find_map(|side| side.retry.clone());
+    /// Shows a message if a frame was retried since this was last called.
+    pub(crate) fn notify_of_retries(&mut self, now: f64) {
+        let retries = (self.solver.sides.iter())
+            .map(|side| side.readouts.retries)
+            .sum();
+        let before = core::mem::replace(&mut self.seen_retries, retries);
+        let latest = self.solver.sides.iter().find_map(|side| side.retry.clone());
         if let Some(why) = latest.filter(|_| retries > before) {
-            self.say(why, now);
+            self.notify(why, now);
         }
+    }
+
+    /// Lets the pointer act on the particles, in `mode`. It is at `at` and moves with `velocity` \[1/s\], both in
+    /// −1..1 of the area that `side` is drawn in.
+    pub fn press_pointer(
+        &mut self,
+        side: usize,
+        at: [f64; 2],
+        mode: PointerMode,
+        velocity: [f64; 2],
+    ) {
+        let Some(camera) = &self.camera else { return };
+        let through = match self.pressed {
+            Some((position, _)) => position,
+            None => self.nearest_particle(side, at).unwrap_or(camera.target),
+        };
+        let position = camera.unproject(at, self.aspect, through);
+        let ahead = [at[0] + velocity[0], at[1] + velocity[1]];
+        let velocity = sub(camera.unproject(ahead, self.aspect, through), position);
+        self.pressed = Some((position, mode));
+        let pointer = Pointer {
+            position,
+            radius: self.pointer_tool.reach,
+            softening: self.pointer_tool.softening,
+            action: self.pointer_tool.action(mode, velocity),
+        };
+        self.order(Order::Command(Command::Pointer(Some(pointer))));
+    }
+
+    /// Ends the pointer's action.
+    pub fn release_pointer(&mut self) {
+        if self.pressed.take().is_some() {
+            self.order(Order::Command(Command::Pointer(None)));
+        }
+    }
+
+    /// In 3D, the position of the particle under `at` that is nearest to the eye \[m\].
+    fn nearest_particle(&self, side: usize, at: [f64; 2]) -> Option<V3> {
+        /// The largest distance from `at`, in parts of half the height.
+        const TOLERANCE: f64 = 0.04;
+        let camera = (self.camera.as_ref()).filter(|camera| camera.dimension == 3)?;
+        let back = camera.axes()[2];
+        let near = |&[x, y, z, _]: &[f32; 4]| {
+            let point = add([x, y, z].map(f64::from), self.scenery.origin);
+            let [x, y] = camera.project(point, self.aspect)?;
+            let off = f64::hypot((x - at[0]) * self.aspect, y - at[1]);
+            (off < TOLERANCE).then(|| (dot(back, point), point))
+        };
+        let found = self.sprites.get(side)?.places.iter().filter_map(near);
+        found
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, point)| point)
     }
 
     pub(crate) fn order(&mut self, order: Order) {

@@ -1,4 +1,4 @@
-//! From meters to the window and back: a flat view in 2D, an orbiting one in 3D.
+//! The camera: maps the scene to the window and back. It is flat in 2D and orbits in 3D.
 //!
 //! ```text
 //!   world [m] ──view──▶ camera's axes (right, up, back) ──projection──▶ −1..1 ──▶ points of the window
@@ -6,10 +6,10 @@
 
 use crate::scenes::Angle;
 
-/// Three numbers.
+/// A vector in three dimensions.
 pub type V3 = [f64; 3];
 
-/// A 4 × 4 matrix, columns first, as shaders want it.
+/// A 4 × 4 matrix by columns, as shaders want it.
 pub type M4 = [[f32; 4]; 4];
 
 pub(crate) fn add(a: V3, b: V3) -> V3 {
@@ -37,39 +37,39 @@ fn normalize(a: V3) -> V3 {
     scale(a, 1.0 / length(a).max(f64::MIN_POSITIVE))
 }
 
-/// What is seen.
+/// The view of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     /// 2 or 3.
     pub dimension: usize,
-    /// What the middle of the window shows \[m\].
+    /// The point that the middle of the window shows \[m\].
     pub target: V3,
-    /// Half of the height seen at the target \[m\].
+    /// Half of the height that the window shows at the target \[m\].
     pub half_height: f64,
-    /// Turn about the vertical \[rad\]; 3D.
+    /// Angle about the vertical \[rad\]; 3D only.
     pub yaw: f64,
-    /// Height above the horizon \[rad\]; 3D.
+    /// Angle above the horizon \[rad\]; 3D only.
     pub pitch: f64,
-    /// Which way is up: an axis and its sign.
+    /// The direction up: a unit vector along an axis.
     pub up: V3,
-    /// Half the angle that the window's height spans \[rad\]; 3D.
+    /// Half the angle that the window's height spans \[rad\]; 3D only.
     half_angle: f64,
-    /// Nothing is farther from the target than this \[m\].
+    /// Half the diagonal of the scene \[m\].
     reach: f64,
 }
 
-/// [`Camera::half_angle`] where the scene does not say.
+/// [`Camera::half_angle`] where the scene does not give it \[rad\].
 const HALF_ANGLE: f64 = 0.35;
-/// Wider, and nothing would be seen for the edges \[rad\].
+/// The largest [`Camera::half_angle`]: a wider view would be nothing but edges \[rad\].
 const WIDEST: f64 = 1.4;
-/// Air around the scene.
+/// The view is larger than the scene by this factor.
 const MARGIN: f64 = 1.06;
-/// Short of the poles, where the orbit would flip \[rad\].
+/// The largest pitch, short of the pole where the orbit would flip \[rad\].
 const STEEPEST: f64 = 1.5;
 
 impl Camera {
-    /// Sees what `angle` asks for, or else the whole box, in a window of `aspect` = width/height; down
-    /// is where gravity pulls.
+    /// A camera that sees what `angle` asks for, or else the whole box, in a window of `aspect` = width/height. Gravity
+    /// points down.
     pub fn fit(
         dimension: usize,
         (min, max): (V3, V3),
@@ -89,7 +89,7 @@ impl Camera {
             up: if dimension == 2 {
                 [0.0, 1.0, 0.0]
             } else {
-                against(gravity)
+                opposite_axis(gravity)
             },
             half_angle: angle.field_of_view.map_or(HALF_ANGLE, |degrees| {
                 (0.5 * degrees.to_radians()).clamp(0.01, WIDEST)
@@ -102,7 +102,7 @@ impl Camera {
         camera.half_height = if dimension == 2 {
             0.5 * MARGIN * size[1].max(size[0] / aspect)
         } else {
-            // Every corner must be inside: try, and widen by how far out the worst one is.
+            // Every corner must be inside: the view widens by how far out the worst corner is.
             let mut half_height = 0.5 * reach;
             for _ in 0..8 {
                 camera.half_height = half_height;
@@ -124,7 +124,7 @@ impl Camera {
         camera
     }
 
-    /// Looks from this direction, seen from the target; 3D.
+    /// Moves the camera to this direction from the target; 3D only.
     pub fn look_from(&mut self, direction: V3) {
         let back = normalize(direction);
         let [side, front] = self.level_axes();
@@ -135,7 +135,7 @@ impl Camera {
         }
     }
 
-    /// Two axes on the horizon; from yaw 0, the eye is toward the second.
+    /// Two axes on the horizon. At yaw 0 the eye is in the direction of the second.
     fn level_axes(&self) -> [V3; 2] {
         let side = if self.up[0] == 0.0 {
             [1.0, 0.0, 0.0]
@@ -145,7 +145,7 @@ impl Camera {
         [side, cross(side, self.up)]
     }
 
-    /// The camera's axes: right, up, and back (toward the eye).
+    /// The camera's axes: right, up, and back toward the eye.
     pub fn axes(&self) -> [V3; 3] {
         if self.dimension == 2 {
             return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -160,7 +160,7 @@ impl Camera {
         [right, cross(back, right), back]
     }
 
-    /// From the eye to the target \[m\].
+    /// Distance from the eye to the target \[m\].
     fn distance(&self) -> f64 {
         self.half_height / self.half_angle.tan()
     }
@@ -169,7 +169,7 @@ impl Camera {
         add(self.target, scale(self.axes()[2], self.distance()))
     }
 
-    /// World, less `origin`, to the camera's axes.
+    /// The matrix from the scene, relative to `origin` \[m\], to the camera's axes.
     pub fn view(&self, origin: V3) -> M4 {
         let axes = self.axes();
         let eye = sub(
@@ -190,7 +190,7 @@ impl Camera {
         })
     }
 
-    /// The camera's axes to −1..1, depth 0..1.
+    /// The matrix from the camera's axes to −1..1, with depth in 0..1.
     pub fn projection(&self, aspect: f64) -> M4 {
         let mut m = [[0.0; 4]; 4];
         if self.dimension == 2 {
@@ -214,7 +214,7 @@ impl Camera {
         ((self.distance() * 0.02).min(0.1 * self.reach), far)
     }
 
-    /// Where a point is seen, in −1..1 (x to the right, y up); `None` behind the eye.
+    /// Projects a point to −1..1 of the window, x to the right and y up. Returns `None` behind the eye.
     pub fn project(&self, point: V3, aspect: f64) -> Option<[f64; 2]> {
         let axes = self.axes();
         let d = sub(point, self.target);
@@ -231,7 +231,7 @@ impl Camera {
         Some([x / (half_height * aspect), y / half_height])
     }
 
-    /// The point seen at `at` in −1..1, in the plane through `through` that faces the camera.
+    /// The point that is seen at `at` (−1..1), in the plane through `through` that faces the camera \[m\].
     pub fn unproject(&self, at: [f64; 2], aspect: f64, through: V3) -> V3 {
         let [right, up, back] = self.axes();
         let forward = dot(back, sub(through, self.target));
@@ -246,7 +246,7 @@ impl Camera {
         )
     }
 
-    /// Half of the height that is seen in the plane through a point \[m\].
+    /// Half of the height that the window shows in the plane through a point \[m\].
     pub fn half_height_at(&self, point: V3) -> f64 {
         if self.dimension == 2 {
             return self.half_height;
@@ -255,20 +255,20 @@ impl Camera {
         depth.max(1e-9) * self.half_angle.tan()
     }
 
-    /// Turns about the target, by parts of the window's height.
+    /// Orbits the target by parts of the window's height.
     pub fn orbit(&mut self, right: f64, up: f64) {
         self.yaw -= right * 4.0;
         self.pitch = (self.pitch + up * -4.0).clamp(-STEEPEST, STEEPEST);
     }
 
-    /// Moves the target against a drag, by parts of the window's height.
+    /// Moves the target against a drag by parts of the window's height.
     pub fn pan(&mut self, right: f64, up: f64) {
         let [x, y, _] = self.axes();
         let by = add(scale(x, right), scale(y, up));
         self.target = sub(self.target, scale(by, 2.0 * self.half_height));
     }
 
-    /// Comes nearer (`factor` > 1), keeping what is seen at `at` where it is.
+    /// Enlarges by `factor`, and keeps the point that is seen at `at` where it is.
     pub fn zoom(&mut self, factor: f64, at: [f64; 2], aspect: f64) {
         let before = self.unproject(at, aspect, self.target);
         self.half_height = (self.half_height / factor).clamp(1e-4 * self.reach, 20.0 * self.reach);
@@ -276,14 +276,14 @@ impl Camera {
         self.target = add(self.target, sub(before, after));
     }
 
-    /// The axis, with its sign, that is nearest to the right of the window.
+    /// The axis of the scene, with its sign, that is nearest to the right of the window.
     pub fn rightward_axis(&self) -> V3 {
-        against(scale(self.axes()[0], -1.0))
+        opposite_axis(scale(self.axes()[0], -1.0))
     }
 }
 
-/// The signed axis that points most against `v`; +y if there is none.
-pub fn against(v: V3) -> V3 {
+/// The axis, with its sign, that is most nearly opposite to `v`; +y if `v` is zero.
+pub fn opposite_axis(v: V3) -> V3 {
     let mut axis = 1;
     for i in [0, 2] {
         if v[i].abs() > v[axis].abs() {
@@ -295,7 +295,7 @@ pub fn against(v: V3) -> V3 {
     up
 }
 
-/// The eight corners of a box; in 2D, pairs of them coincide.
+/// The eight corners of a box. In 2D, pairs of them coincide.
 pub fn corners(min: V3, max: V3) -> [V3; 8] {
     core::array::from_fn(|i| {
         core::array::from_fn(|axis| {
@@ -377,7 +377,7 @@ mod tests {
     }
 
     #[test]
-    fn a_direction_given_is_the_direction_looked_from() {
+    fn the_camera_looks_from_the_direction_given() {
         for mut camera in cameras().into_iter().skip(1) {
             let from = normalize([0.3, 0.4, 0.8]);
             camera.look_from(from);
@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_that_says_what_to_look_at_is_looked_at_so() {
+    fn center_height_and_field_of_view_are_those_asked_for() {
         let angle = Angle {
             center: Some([1.0, 0.5, 0.25]),
             height: Some(0.8),
@@ -410,7 +410,7 @@ mod tests {
     }
 
     #[test]
-    fn zoom_keeps_what_is_under_the_pointer() {
+    fn zoom_keeps_the_point_under_the_pointer() {
         for mut camera in cameras() {
             let (at, through) = ([0.4, -0.2], camera.target);
             let before = camera.unproject(at, 1.3, through);

@@ -1,20 +1,20 @@
-//! What the panel would compare: a setting of the scene, and the values to run it with.
+//! The comparison that the panel is putting together: a setting of the scene, and values for it.
 
 use lahar_scene::scene::Comparison;
 
 use crate::scenes::{Setting, SettingValue};
 
-/// A comparison being put together.
+/// A setting and the values to compare.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ComparisonDraft {
-    /// The setting, by its key; empty before there is a scene.
+    /// The key of the setting; empty before there is a scene.
     pub key: String,
-    /// The values, the scene's own first at first.
+    /// The values, at first the scene's own and another one.
     pub values: Vec<SettingValue>,
 }
 
 impl ComparisonDraft {
-    /// Another scene, or the same with other settings: keeps to what is compared, or suggests something.
+    /// Takes over the settings of a scene that was opened: keeps the comparison that runs, or else suggests one.
     pub(crate) fn offer(&mut self, settings: &[Setting], running: Option<&Comparison>) {
         if running.is_some_and(|running| running.key == self.key) {
             return;
@@ -29,18 +29,18 @@ impl ComparisonDraft {
                     .map(|value| setting.value.like(value))
                     .collect();
             }
-            // A comparison by a key that the panel does not offer.
+            // The panel does not offer the key of the comparison that runs, or there are no settings.
             (_, Some(_)) | (None, None) => *self = Self::default(),
         }
     }
 
-    /// A setting, with its value and another one.
+    /// Chooses a setting, with its value and another one.
     pub fn choose(&mut self, setting: &Setting) {
         self.key.clone_from(&setting.key);
         self.values = vec![setting.value.clone(), setting.value.another()];
     }
 
-    /// One value more.
+    /// Adds one more value.
     pub fn add(&mut self) {
         if let Some(last) = self
             .values
@@ -51,7 +51,7 @@ impl ComparisonDraft {
         }
     }
 
-    /// What it comes to; `None` if there is nothing to compare.
+    /// The comparison; `None` if it has fewer than two different values.
     pub fn comparison(&self) -> Option<Comparison> {
         let mut values: Vec<String> = vec![];
         for value in self.values.iter().map(SettingValue::to_toml) {
@@ -67,7 +67,7 @@ impl ComparisonDraft {
 }
 
 impl SettingValue {
-    /// Something to compare it with: the next word, twice the number.
+    /// A value to compare this one with: the next word, or twice the number.
     fn another(&self) -> Self {
         match self {
             Self::Number(number) if *number == 0.0 => Self::Number(1.0),
@@ -80,7 +80,7 @@ impl SettingValue {
         }
     }
 
-    /// The value that `text` writes, of this one's kind.
+    /// Reads a value of the same kind from `text`.
     fn like(&self, text: &str) -> Self {
         match self {
             Self::Number(number) => Self::Number(text.parse().unwrap_or(*number)),
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_setting_is_compared_with_something_else_and_never_with_itself() {
+    fn a_setting_is_never_compared_with_itself() {
         let mut draft = ComparisonDraft::default();
         assert_eq!(draft.comparison(), None);
         draft.offer(&[transfer()], None);
@@ -113,12 +113,12 @@ mod tests {
         draft.add();
         draft.add();
         assert_eq!(draft.values.len(), Comparison::MOST);
-        // The fourth word is the first again.
+        // The fourth word is the first one again.
         assert_eq!(draft.comparison().unwrap().values.len(), 3);
     }
 
     #[test]
-    fn what_was_asked_for_on_the_command_line_is_in_the_panel() {
+    fn the_panel_shows_the_comparison_of_the_command_line() {
         let mut draft = ComparisonDraft::default();
         let running: Comparison = "transfer=pic,flip".parse().unwrap();
         draft.offer(&[transfer()], Some(&running));

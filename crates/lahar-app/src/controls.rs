@@ -1,22 +1,22 @@
-//! The keys: one table, from which come what they do, the hints in the window and on the terminal.
+//! The keys: a table of key bindings, and the hints for window and terminal.
 
 use eframe::egui::{Event, InputState, Key, Modifiers};
 
 /// A direction of the window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// To the left.
+    /// To the left of the window.
     Left,
-    /// To the right.
+    /// To the right of the window.
     Right,
-    /// Upward.
+    /// To the top of the window.
     Up,
-    /// Downward.
+    /// To the bottom of the window.
     Down,
 }
 
 impl Direction {
-    /// To the right and up, in −1..1.
+    /// The steps to the right and up, each −1, 0 or 1.
     pub fn step(self) -> [f64; 2] {
         match self {
             Self::Left => [-1.0, 0.0],
@@ -27,44 +27,44 @@ impl Direction {
     }
 }
 
-/// What a key or a button does.
+/// The action of a key or a button.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
-    /// The scene from its start.
+    /// Restarts the scene.
     Restart,
-    /// The default fluid scene.
+    /// Opens the default fluid scene.
     DefaultScene,
-    /// The scene at this place of the list, from 0.
+    /// Opens the scene at this place of the list, counted from 0.
     Scene(usize),
     /// Shows or hides the list of scenes.
     SceneList,
-    /// Turns gravity; in a recording, to another frame.
+    /// Turns gravity; in a recording, goes to another frame.
     Gravity(Direction),
-    /// Stops or goes on.
+    /// Pauses or continues.
     Pause,
-    /// One substep; in a recording, one frame.
+    /// Takes one substep; in a recording, goes one frame on.
     Substep,
-    /// In a recording, one frame back.
+    /// In a recording, goes one frame back.
     Back,
-    /// Several values of a setting side by side, or the scene alone again.
+    /// Runs several values of a setting side by side, or the scene alone again.
     Compare,
-    /// More simulated seconds a second.
+    /// Simulates more seconds per second.
     Faster,
-    /// Fewer.
+    /// Simulates fewer seconds per second.
     Slower,
-    /// The next thing to color by.
+    /// Colors particles by the next quantity.
     Colors,
-    /// The whole scene in view.
+    /// Fits the view to the scene.
     Fit,
-    /// Orbits; in 2D, moves the view.
+    /// Orbits the camera; in 2D, moves the view.
     Turn(Direction),
-    /// Moves the view.
+    /// Moves the view in this direction.
     Move(Direction),
-    /// Enlarges.
+    /// Enlarges the scene.
     Nearer,
-    /// Makes smaller.
+    /// Makes the scene smaller.
     Farther,
-    /// The window into a PNG file.
+    /// Saves the window as a PNG file.
     Screenshot,
     /// Shows or hides the hints.
     Hints,
@@ -77,24 +77,24 @@ pub enum Action {
 /// A line of the hints.
 #[derive(Clone, Copy, Debug)]
 pub struct Hint {
-    /// The keys, as written on them.
+    /// The names of the keys.
     pub keys: &'static str,
-    /// What they do.
+    /// Their action, in a few words.
     pub does: &'static str,
 }
 
-/// What must be held beside the key.
+/// The modifier keys that must be down with a key.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum With {
-    /// Nothing, or Shift: some keyboards need it for + and the like.
+enum ModifierRule {
+    /// None or Shift, which some keyboards need for + and the like.
     Any,
     Nothing,
     Shift,
     Ctrl,
 }
 
-impl With {
-    fn agrees(self, held: Modifiers) -> bool {
+impl ModifierRule {
+    fn allows(self, held: Modifiers) -> bool {
         let ctrl = held.ctrl || held.mac_cmd;
         !held.alt
             && match self {
@@ -108,8 +108,8 @@ impl With {
 
 struct Binding {
     keys: &'static [Key],
-    with: With,
-    /// Goes on while the key is held.
+    modifiers: ModifierRule,
+    /// True if the action repeats while the key is down.
     repeats: bool,
     action: Action,
 }
@@ -117,15 +117,15 @@ struct Binding {
 const fn key(keys: &'static [Key], action: Action) -> Binding {
     Binding {
         keys,
-        with: With::Any,
+        modifiers: ModifierRule::Any,
         repeats: false,
         action,
     }
 }
 
-const fn with(with: With, keys: &'static [Key], action: Action) -> Binding {
+const fn with(modifiers: ModifierRule, keys: &'static [Key], action: Action) -> Binding {
     Binding {
-        with,
+        modifiers,
         ..key(keys, action)
     }
 }
@@ -138,20 +138,20 @@ const fn repeating(binding: Binding) -> Binding {
 }
 
 const fn turn(key: &'static [Key], direction: Direction) -> Binding {
-    repeating(with(With::Shift, key, Action::Turn(direction)))
+    repeating(with(ModifierRule::Shift, key, Action::Turn(direction)))
 }
 
 const fn shift_view(key: &'static [Key], direction: Direction) -> Binding {
-    repeating(with(With::Ctrl, key, Action::Move(direction)))
+    repeating(with(ModifierRule::Ctrl, key, Action::Move(direction)))
 }
 
 const fn gravity(keys: &'static [Key], direction: Direction) -> Binding {
-    with(With::Nothing, keys, Action::Gravity(direction))
+    with(ModifierRule::Nothing, keys, Action::Gravity(direction))
 }
 
 const BINDINGS: &[Binding] = &[
-    with(With::Nothing, &[Key::R], Action::Restart),
-    with(With::Shift, &[Key::R], Action::DefaultScene),
+    with(ModifierRule::Nothing, &[Key::R], Action::Restart),
+    with(ModifierRule::Shift, &[Key::R], Action::DefaultScene),
     key(&[Key::Num1], Action::Scene(0)),
     key(&[Key::Num2], Action::Scene(1)),
     key(&[Key::Num3], Action::Scene(2)),
@@ -190,7 +190,7 @@ const BINDINGS: &[Binding] = &[
     key(&[Key::Escape], Action::Leave),
 ];
 
-/// Keys of a simulation.
+/// Keys while a simulation runs.
 const LIVE: &[Hint] = &[
     hint("R", "restart (Shift+R: the default fluid scene)"),
     hint("Space", "pause or go on, . one substep"),
@@ -198,7 +198,7 @@ const LIVE: &[Hint] = &[
     hint("V", "compare: one scene, two settings"),
 ];
 
-/// Keys of a recording.
+/// Keys while a recording is replayed.
 const REPLAY: &[Hint] = &[
     hint("R", "from its start (Shift+R: the default fluid scene)"),
     hint("Space", "pause or go on"),
@@ -206,7 +206,7 @@ const REPLAY: &[Hint] = &[
     hint("arrows", "one frame, ten frames"),
 ];
 
-/// Keys of both.
+/// Keys that work in both cases.
 const ALWAYS: &[Hint] = &[
     hint("1 to 9", "choose a scene, L: any of them, by typing"),
     hint("+ -", "faster, slower"),
@@ -218,7 +218,7 @@ const ALWAYS: &[Hint] = &[
     hint("F12", "screenshot"),
 ];
 
-const HAND_2D: &[Hint] = &[
+const ATTRACT_2D: &[Hint] = &[
     hint("left, right button", "attract, repel"),
     hint("Ctrl+drag", "drag along"),
 ];
@@ -228,7 +228,7 @@ const PUSH_2D: &[Hint] = &[
     hint("Ctrl+drag", "drag along"),
 ];
 
-const HAND_3D: &[Hint] = &[
+const ATTRACT_3D: &[Hint] = &[
     hint("Shift+left, right", "attract, repel"),
     hint("Ctrl+drag", "drag along"),
 ];
@@ -245,19 +245,19 @@ const VIEW_3D: &[Hint] = &[
     hint("wheel, middle-drag", "zoom, pan"),
 ];
 
-/// The keys and the mouse for people, for what is in sight: a recording or a simulation, and a hand
-/// that `pushes` or attracts.
+/// The key and mouse hints for a recording or a simulation. In the latter the pointer attracts nodes, or pushes
+/// particles if `pushes` is true.
 pub fn hints(recorded: bool, dimension: usize, pushes: bool) -> Vec<Hint> {
-    let (hand, view) = match (dimension, pushes) {
-        (3, false) => (HAND_3D, VIEW_3D),
+    let (pointer, view) = match (dimension, pushes) {
+        (3, false) => (ATTRACT_3D, VIEW_3D),
         (3, true) => (PUSH_3D, VIEW_3D),
-        (_, false) => (HAND_2D, VIEW_2D),
+        (_, false) => (ATTRACT_2D, VIEW_2D),
         (_, true) => (PUSH_2D, VIEW_2D),
     };
     if recorded {
         [REPLAY, ALWAYS, view].concat()
     } else {
-        [LIVE, ALWAYS, hand, view].concat()
+        [LIVE, ALWAYS, pointer, view].concat()
     }
 }
 
@@ -265,13 +265,13 @@ const fn hint(keys: &'static str, does: &'static str) -> Hint {
     Hint { keys, does }
 }
 
-/// The keys and the mouse, a line each, for a terminal.
+/// The key and mouse hints, one per line, for a terminal.
 pub fn key_help() -> String {
     let mut help = String::new();
     for (title, lists) in [
         ("Keys:", &[LIVE, ALWAYS][..]),
-        ("Mouse in 2D:", &[HAND_2D, VIEW_2D]),
-        ("Mouse in 3D:", &[HAND_3D, VIEW_3D]),
+        ("Mouse in 2D:", &[ATTRACT_2D, VIEW_2D]),
+        ("Mouse in 3D:", &[ATTRACT_3D, VIEW_3D]),
         ("Keys of a recording:", &[REPLAY]),
     ] {
         help.push_str(title);
@@ -284,11 +284,11 @@ pub fn key_help() -> String {
 }
 
 fn binding(key: Key, held: Modifiers) -> Option<&'static Binding> {
-    (BINDINGS.iter()).find(|binding| binding.keys.contains(&key) && binding.with.agrees(held))
+    (BINDINGS.iter()).find(|binding| binding.keys.contains(&key) && binding.modifiers.allows(held))
 }
 
-/// The actions asked for by keys in this frame. While a widget of the panel has the keyboard
-/// (`focused`), what that widget may want stays its own.
+/// The actions of the keys pressed in this frame. While a widget of the panel has the keyboard (`focused`), only F12
+/// acts, and all other keys are the widget's.
 pub fn actions(input: &InputState, focused: bool) -> Vec<Action> {
     let mut actions = vec![];
     for event in &input.events {
@@ -311,10 +311,10 @@ pub fn actions(input: &InputState, focused: bool) -> Vec<Action> {
     actions
 }
 
-/// The direction whose key is down: `before` as long as it is.
+/// The gravity key that is down. If several are, it is `before` as long as that one is down, and else the first.
 pub fn held_direction(input: &InputState, before: Option<Direction>) -> Option<Direction> {
     let is_held = |binding: &&Binding| {
-        binding.with.agrees(input.modifiers)
+        binding.modifiers.allows(input.modifiers)
             && binding.keys.iter().any(|key| input.keys_down.contains(key))
     };
     let held = (BINDINGS.iter().filter(is_held)).filter_map(|binding| match binding.action {

@@ -1,28 +1,28 @@
-//! How fast it goes: pictures and particle-steps by the clock, a line a second.
+//! The window's own speed: pictures and particle-steps per second, told once a second.
 
 use std::time::{Duration, Instant};
 
 use crate::solver::Side;
 
-/// How often there is a line.
+/// The time between two lines.
 const INTERVAL: Duration = Duration::from_secs(1);
 
-/// Counts between two lines.
+/// Measures the speed of drawing and simulating.
 pub(crate) struct Meter {
-    say: fn(&str),
-    /// When the program began.
+    print: fn(&str),
+    /// The start of the program.
     start: Instant,
     since: Instant,
     drawn: u32,
-    /// Particles × substeps and simulated time at `since`.
+    /// Particles × substeps, and simulated time \[s\], at `since`.
     before: (f64, f64),
     has_begun: bool,
 }
 
 impl Meter {
-    pub(crate) fn new(say: fn(&str), start: Instant) -> Self {
+    pub(crate) fn new(print: fn(&str), start: Instant) -> Self {
         Self {
-            say,
+            print,
             start,
             since: start,
             drawn: 0,
@@ -31,7 +31,7 @@ impl Meter {
         }
     }
 
-    /// The window has been drawn with these sides in it.
+    /// Counts a picture of these sides, and prints a line if it is time.
     pub(crate) fn drawn(&mut self, sides: &[Side]) {
         let Some(first) = sides.first() else { return };
         let steps = (sides.iter())
@@ -41,7 +41,7 @@ impl Meter {
         if !self.has_begun {
             self.has_begun = true;
             let seconds = self.start.elapsed().as_secs_f64();
-            (self.say)(&format!("first picture after {seconds:.2} s"));
+            (self.print)(&format!("first picture after {seconds:.2} s"));
             (self.since, self.before) = (Instant::now(), now);
             return;
         }
@@ -53,10 +53,10 @@ impl Meter {
         let seconds = elapsed.as_secs_f64();
         let rate = (now.0 - self.before.0) / seconds;
         let pace = (now.1 - self.before.1) / seconds;
-        // A restart in between would count backwards.
+        // After a restart the counts are smaller than before: no line.
         if rate >= 0.0 {
             let pictures = f64::from(self.drawn) / seconds;
-            (self.say)(&format!(
+            (self.print)(&format!(
                 "{:.3} s simulated, {pace:.3} s/s, {:.2} M particle-steps/s, {pictures:.1} pictures/s",
                 now.1,
                 rate / 1e6,

@@ -1,10 +1,10 @@
-//! What is written over the scene: titles, legend, scale, keys, messages.
+//! The texts over the scene: titles, legend, scale, key hints, messages.
 
 use eframe::egui::{
     self, Align2, Color32, CornerRadius, FontId, Pos2, Rect, Shape, Stroke, Ui, Vec2, pos2, vec2,
 };
 
-use crate::app_state::AppState;
+use crate::app_state::{AppState, Notice};
 use crate::color::{self, ColorBy};
 use crate::controls;
 use crate::panel::{grouped, millions, real_time};
@@ -12,10 +12,12 @@ use crate::pointer::PointerMode;
 use crate::scenery::round_step;
 use crate::solver::Condition;
 
+/// Color of texts and thin lines.
 const INK: Color32 = Color32::from_rgb(0xd7, 0xe3, 0xea);
+/// Color behind the legend.
 const SHADE: Color32 = Color32::from_black_alpha(140);
 
-/// Between a side and the ones to its left and above.
+/// Draws the edges between a side and the sides to its left and above.
 pub(crate) fn edges(ui: &Ui, rect: Rect, cell: Rect) {
     let stroke = Stroke::new(1.0, Color32::from_white_alpha(60));
     let painter = ui.painter_at(rect);
@@ -27,17 +29,17 @@ pub(crate) fn edges(ui: &Ui, rect: Rect, cell: Rect) {
     }
 }
 
-/// The circle that the hand reaches.
-pub(crate) fn hand(state: &AppState, ui: &Ui, rect: Rect) {
-    let (Some((position, grip)), Some(camera)) = (state.held, &state.camera) else {
+/// Draws the circle that the pointer reaches while a button is pressed.
+pub(crate) fn pointer(state: &AppState, ui: &Ui, rect: Rect) {
+    let (Some((position, mode)), Some(camera)) = (state.pressed, &state.camera) else {
         return;
     };
     let Some([x, y]) = camera.project(position, state.aspect) else {
         return;
     };
     let center = rect.center() + 0.5 * vec2(x as f32 * rect.width(), -y as f32 * rect.height());
-    let radius = state.hand.reach / camera.half_height_at(position) * 0.5;
-    let color = match grip {
+    let radius = state.pointer_tool.reach / camera.half_height_at(position) * 0.5;
+    let color = match mode {
         PointerMode::Attract => Color32::from_rgb(0x7f, 0xd0, 0x9c),
         PointerMode::Repel => color::JELLY,
         PointerMode::Drag => Color32::WHITE,
@@ -50,10 +52,10 @@ pub(crate) fn hand(state: &AppState, ui: &Ui, rect: Rect) {
     painter.circle_filled(center, 3.0, color);
 }
 
-/// Bodies that a legend has room for.
-const MOST_NAMED: usize = 12;
+/// The largest number of bodies in a legend.
+const MAX_NAMED: usize = 12;
 
-/// What the colors mean, under the title.
+/// Draws the meaning of the colors, under the title.
 pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     let painter = ui.painter_at(rect);
     let font = FontId::proportional(13.0);
@@ -70,7 +72,7 @@ pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
             )
         }
         ColorBy::Body => {
-            let bodies = info.bodies.iter().take(MOST_NAMED);
+            let bodies = info.bodies.iter().take(MAX_NAMED);
             Some(
                 bodies
                     .map(|(name, [r, g, b])| (name.as_str(), Color32::from_rgb(*r, *g, *b)))
@@ -81,7 +83,7 @@ pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     };
     if let Some(named) = named {
         if named.len() < 2 {
-            return; // one needs no telling apart
+            return; // one color needs no legend
         }
         for (i, (name, color)) in named.into_iter().enumerate() {
             let at = corner + vec2(6.0, 8.0 + 20.0 * i as f32);
@@ -115,7 +117,7 @@ pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     }
 }
 
-/// A number in a few characters.
+/// Writes a number in a few characters.
 fn short(value: f32) -> String {
     let size = value.abs();
     if size != 0.0 && !(1e-3..1e5).contains(&size) {
@@ -127,7 +129,7 @@ fn short(value: f32) -> String {
     }
 }
 
-/// How long a meter is, in 2D.
+/// Draws the scale, in 2D.
 pub(crate) fn scale_bar(state: &AppState, ui: &Ui, rect: Rect) {
     let Some(camera) = state.camera.as_ref().filter(|camera| camera.dimension == 2) else {
         return;
@@ -160,12 +162,12 @@ pub(crate) fn scale_bar(state: &AppState, ui: &Ui, rect: Rect) {
     );
 }
 
-/// Whether the numbers stand over the scene: the panel has no room for them, or is not there.
+/// True if the numbers are shown over the scene: where there is no panel, or several sides.
 fn shows_numbers(state: &AppState) -> bool {
     !state.show_panel || state.sides().len() > 1
 }
 
-/// The scene's name and the side's, and the numbers that the panel does not show.
+/// Draws the names of the scene and the side, and the numbers that the panel does not show.
 pub(crate) fn status(state: &AppState, ui: &Ui, rect: Rect, side: usize) {
     let Some(info) = state.info() else { return };
     let painter = ui.painter_at(rect);
@@ -200,7 +202,7 @@ pub(crate) fn status(state: &AppState, ui: &Ui, rect: Rect, side: usize) {
         parts.push(real_time(state));
     }
     if state.recorded_frames().is_none() {
-        parts.push(format!("{} substeps a frame", now.substeps_per_frame));
+        parts.push(format!("{} substeps per frame", now.substeps_per_frame));
         parts.push(format!("dt {:.2e} s ({})", now.dt, now.limit.name()));
     }
     parts.push(format!("{} particles", grouped(now.particles as u64)));
@@ -210,7 +212,7 @@ pub(crate) fn status(state: &AppState, ui: &Ui, rect: Rect, side: usize) {
     }
     let at = title.left_bottom() + vec2(0.0, 4.0);
     let font = FontId::proportional(12.0);
-    // What does not fit is left out, the last first.
+    // The last parts are left out until the rest fits.
     loop {
         let text = painter.layout_no_wrap(parts.join("  ·  "), font.clone(), INK);
         if at.x + text.size().x <= rect.right() - 8.0 || parts.len() == 1 {
@@ -221,13 +223,13 @@ pub(crate) fn status(state: &AppState, ui: &Ui, rect: Rect, side: usize) {
     }
 }
 
-/// The keys at the upper right, where scenes have their air; the scenes along the bottom.
+/// Draws the key hints at the upper right, where scenes have their air, and the scenes along the bottom.
 pub(crate) fn hints(state: &AppState, ui: &Ui, rect: Rect) {
     let dimension = state.info().map_or(2, |info| info.dimension);
     let rows = controls::hints(
         state.recorded_frames().is_some(),
         dimension,
-        state.hand.push.is_some(),
+        state.pointer_tool.push.is_some(),
     );
     let font = FontId::proportional(12.0);
     let painter = ui.painter_at(rect);
@@ -246,7 +248,7 @@ pub(crate) fn hints(state: &AppState, ui: &Ui, rect: Rect) {
     let top = if shows_numbers(state) { 58.0 } else { 10.0 };
     let table = Rect::from_min_size(rect.right_top() + vec2(-size.x - 10.0, top), size);
     if !rect.contains_rect(table) {
-        return; // the panel's tooltips name the keys too
+        return; // too small; the panel's tooltips name the keys too
     }
     painter.rect_filled(table, CornerRadius::same(4), Color32::from_black_alpha(80));
     for (i, hint) in rows.iter().enumerate() {
@@ -263,7 +265,7 @@ pub(crate) fn hints(state: &AppState, ui: &Ui, rect: Rect) {
     }
 }
 
-/// Words in lines no wider than `width`.
+/// Joins words to lines no wider than `width`.
 fn wrap(painter: &egui::Painter, font: &FontId, words: &[String], width: f32) -> Vec<String> {
     let measure = |text: &str| {
         painter
@@ -284,15 +286,15 @@ fn wrap(painter: &egui::Painter, font: &FontId, words: &[String], width: f32) ->
     lines
 }
 
-/// What went wrong, what is awaited, what was done.
+/// Draws failures, progress, notices and warnings.
 pub(crate) fn messages(state: &mut AppState, ui: &Ui, rect: Rect) {
     let painter = ui.painter_at(rect);
     let now = ui.input(|input| input.time);
-    state.tell_retries(now);
+    state.notify_of_retries(now);
     if let Some(why) = state.failure() {
         let text = format!("{why}\n\nR restarts the scene, 1 to 9 choose another.");
         card(&painter, rect, rect.center(), &text, color::JELLY);
-    } else if state.shown().condition == Condition::Opening {
+    } else if state.solver().condition == Condition::Opening {
         let text = format!("Opening {} …", state.scene);
         card(
             &painter,
@@ -302,7 +304,7 @@ pub(crate) fn messages(state: &mut AppState, ui: &Ui, rect: Rect) {
             INK,
         );
     }
-    if let Some((text, until)) = &state.notice {
+    if let Some(Notice { text, until }) = &state.notice {
         if now < *until {
             card(
                 &painter,
@@ -315,7 +317,7 @@ pub(crate) fn messages(state: &mut AppState, ui: &Ui, rect: Rect) {
             state.notice = None;
         }
     } else if let Some(info) = state.info()
-        && state.shown().opened > 0
+        && state.solver().opened > 0
         && state.readouts().time < 3.0
         && !info.warnings.is_empty()
     {
@@ -330,7 +332,7 @@ pub(crate) fn messages(state: &mut AppState, ui: &Ui, rect: Rect) {
     }
 }
 
-/// Text on a dark card.
+/// Draws a text on a dark card.
 fn card(painter: &egui::Painter, rect: Rect, center: Pos2, text: &str, edge: Color32) {
     let width = (rect.width() - 60.0).clamp(60.0, 760.0);
     let text = painter.layout(

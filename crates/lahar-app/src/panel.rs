@@ -1,4 +1,4 @@
-//! The side panel: everything that the keys do, and sliders, for the mouse.
+//! The side panel: buttons and sliders for everything that the keys do, and more.
 
 use eframe::egui::{self, DragValue, RichText, Slider, Ui};
 
@@ -9,7 +9,7 @@ use crate::scenes::{Setting, SettingValue};
 use crate::solver::Condition;
 use lahar_scene::scene::Comparison;
 
-/// The whole panel.
+/// Shows the whole panel.
 pub fn panel(state: &mut AppState, ui: &mut Ui) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
@@ -37,7 +37,7 @@ pub fn panel(state: &mut AppState, ui: &mut Ui) {
         looks(state, ui);
         ui.separator();
         if !recorded {
-            hand(state, ui);
+            pointer(state, ui);
             ui.separator();
         }
         readouts(state, ui);
@@ -52,11 +52,11 @@ pub fn panel(state: &mut AppState, ui: &mut Ui) {
     });
 }
 
-/// Below a recording: where in it one is.
+/// Shows the player below a recording: play and pause, and a slider over its frames.
 pub fn player(state: &mut AppState, ui: &mut Ui, frames: usize) {
     ui.add_space(4.0);
     ui.horizontal(|ui| {
-        let stands = state.paused || state.shown().condition == Condition::Ended;
+        let stands = state.paused || state.solver().condition == Condition::Ended;
         let (label, hint) = if stands {
             ("Play", "Space")
         } else {
@@ -85,7 +85,7 @@ pub fn player(state: &mut AppState, ui: &mut Ui, frames: usize) {
     ui.add_space(4.0);
 }
 
-/// A widget for a value; of numbers, `speed` parts of it a point of dragging.
+/// A widget for a value.
 fn value(
     ui: &mut Ui,
     salt: impl std::hash::Hash + std::fmt::Debug,
@@ -110,7 +110,7 @@ fn value(
     }
 }
 
-/// The same scene with several values of a setting.
+/// Shows the comparison of several values of a setting.
 fn compare(state: &mut AppState, ui: &mut Ui) {
     let full_name = |setting: &Setting| match setting.group.as_str() {
         "scene" => setting.name.clone(),
@@ -142,7 +142,12 @@ fn compare(state: &mut AppState, ui: &mut Ui) {
         ui.horizontal(|ui| {
             let label = ui.label(format!("value {}", i + 1)).id;
             value(ui, ("compared value", i), draft).labelled_by(label);
-            if several && ui.small_button("×").on_hover_text("Without it").clicked() {
+            if several
+                && ui
+                    .small_button("×")
+                    .on_hover_text("Remove this value")
+                    .clicked()
+            {
                 removed = Some(i);
             }
         });
@@ -178,7 +183,7 @@ fn compare(state: &mut AppState, ui: &mut Ui) {
     });
 }
 
-/// Resolution, scheme, material parameters: they take effect with a restart.
+/// Shows resolution, schemes and material parameters. They take effect with a restart.
 fn settings(state: &mut AppState, ui: &mut Ui) {
     let mut group = String::new();
     egui::Grid::new("settings").num_columns(2).show(ui, |ui| {
@@ -238,7 +243,7 @@ fn scene(state: &mut AppState, ui: &mut Ui) {
             .labelled_by(label);
         if ui
             .button("List")
-            .on_hover_text("What there is to see (L)")
+            .on_hover_text("All scenes, with pictures (L)")
             .clicked()
         {
             state.act(Action::SceneList);
@@ -277,7 +282,7 @@ fn clock(state: &mut AppState, ui: &mut Ui) {
         .text("speed");
     if ui
         .add(slider)
-        .on_hover_text("Simulated seconds a second, at most (+ and −)")
+        .on_hover_text("Largest speed, in simulated seconds per second (+ and −)")
         .changed()
     {
         state.set_speed(speed);
@@ -342,7 +347,7 @@ fn looks(state: &mut AppState, ui: &mut Ui) {
             .fixed_decimals(2),
     )
     .on_hover_text(
-        "Of a particle, in parts of the distance to its neighbors, or of the scene's own",
+        "Radius of a particle, in parts of the distance to its neighbors or of the scene's own radius",
     );
     ui.horizontal(|ui| {
         let label = ui.label("background").id;
@@ -365,27 +370,27 @@ fn looks(state: &mut AppState, ui: &mut Ui) {
             });
         }
         if changed {
-            state.repaint();
+            state.palette_changed();
         }
     }
 }
 
-fn hand(state: &mut AppState, ui: &mut Ui) {
+fn pointer(state: &mut AppState, ui: &mut Ui) {
     let gravity = state.scene_gravity();
     ui.add(
-        Slider::new(&mut state.hand.pull, 0.1 * gravity..=20.0 * gravity)
+        Slider::new(&mut state.pointer_tool.pull, 0.1 * gravity..=20.0 * gravity)
             .logarithmic(true)
             .max_decimals(1)
             .suffix(" m/s²")
-            .text("hand"),
+            .text("mouse"),
     )
-    .on_hover_text("How hard the mouse attracts and repels, pushes and pulls");
+    .on_hover_text("How strongly the mouse attracts and repels, pushes and pulls");
     let dimension = state.info().map_or(2, |info| info.dimension);
     let smallest = state.scenery.smallest(dimension);
     ui.horizontal(|ui| {
-        let mut everywhere = state.hand.reach.is_infinite();
+        let mut everywhere = state.pointer_tool.reach.is_infinite();
         let most = 2.0 * smallest;
-        let mut reach = state.hand.reach.min(most);
+        let mut reach = state.pointer_tool.reach.min(most);
         let slider = Slider::new(&mut reach, 0.01 * most..=most)
             .logarithmic(true)
             .max_decimals(3)
@@ -396,7 +401,7 @@ fn hand(state: &mut AppState, ui: &mut Ui) {
         let toggled = ui.checkbox(&mut everywhere, "all").changed();
         ui.label("reach");
         if slider.changed() || toggled {
-            state.hand.reach = if everywhere { f64::INFINITY } else { reach };
+            state.pointer_tool.reach = if everywhere { f64::INFINITY } else { reach };
         }
     });
 }
@@ -418,13 +423,13 @@ fn readouts(state: &AppState, ui: &mut Ui) {
         if let Some(frames) = recorded {
             row("frame", format!("{} of {}", now.frame, frames - 1));
         } else {
-            row("substeps a frame", now.substeps_per_frame.to_string());
+            row("substeps per frame", now.substeps_per_frame.to_string());
             row("dt", format!("{:.3e} s", now.dt));
             row("limited by", now.limit.name().to_owned());
             let rate = millions(now.particle_steps_per_second);
             row("particle-steps/s", rate);
             if now.retries > 0 {
-                row("frames tried again", now.retries.to_string());
+                row("retries", now.retries.to_string());
             }
         }
         row("particles", grouped(now.particles as u64));
@@ -434,9 +439,9 @@ fn readouts(state: &AppState, ui: &mut Ui) {
     });
 }
 
-/// "0.98×", or why not.
+/// The speed relative to real time, as in "0.98×", or the reason why there is none.
 pub fn real_time(state: &AppState) -> String {
-    match state.shown().condition {
+    match state.solver().condition {
         Condition::Running => format!("{:.2}×", state.readouts().real_time),
         Condition::Paused => "paused".to_owned(),
         Condition::Ended => "at the end".to_owned(),
@@ -445,12 +450,12 @@ pub fn real_time(state: &AppState) -> String {
     }
 }
 
-/// "12.3 M".
+/// A rate in millions, as in "12.30 M".
 pub fn millions(rate: f64) -> String {
     format!("{:.2} M", rate / 1e6)
 }
 
-/// "12 345".
+/// A number with a thin space between groups of digits, as in "12 345".
 pub fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let mut out = String::new();

@@ -1,15 +1,15 @@
-//! The list of scenes: a picture and a sentence each, found by typing.
+//! The list of scenes, each with a picture and a sentence. Typing searches it.
 
 use eframe::egui::{self, Align2, Key, RichText, Ui, Vec2, vec2};
 
 use crate::app_state::AppState;
 use crate::scenes::SceneCard;
 
-/// Room for a scene's small picture.
+/// Size of a scene's small picture [points].
 const THUMBNAIL: Vec2 = vec2(112.0, 64.0);
 
-/// The scenes with a sentence each. Typing leaves those that have all the words, the arrows choose,
-/// Enter opens.
+/// Shows the list of scenes. Typing leaves the scenes that contain all the words, the arrows choose one of them, and
+/// Enter opens it.
 pub(crate) fn scene_list(state: &mut AppState, ui: &Ui) {
     if !state.show_scenes {
         return;
@@ -29,7 +29,7 @@ pub(crate) fn scene_list(state: &mut AppState, ui: &Ui) {
                 .max_height(height)
                 .show(ui, |ui| {
                     for (place, &index) in found.iter().enumerate() {
-                        let here = place == state.search.1;
+                        let here = place == state.search.chosen;
                         let row = row(state, ui, index, here);
                         if row.clicked() {
                             chosen = Some(state.scenes[index].name.clone());
@@ -49,19 +49,19 @@ pub(crate) fn scene_list(state: &mut AppState, ui: &Ui) {
     }
 }
 
-/// The line to type in; returns the scenes that it leaves, and whether another one is chosen now.
+/// Shows the line to type in. Returns the scenes found, and true if another one of them is chosen than before.
 fn search(state: &mut AppState, ui: &mut Ui, chosen: &mut Option<String>) -> (Vec<usize>, bool) {
     let before = state.search.clone();
-    let (typed, at) = &mut state.search;
+    let search = &mut state.search;
     let hint = "type to find one; arrows, Enter";
-    let line = egui::TextEdit::singleline(typed).hint_text(hint);
+    let line = egui::TextEdit::singleline(&mut search.text).hint_text(hint);
     let line = ui.add(line.desired_width(f32::INFINITY));
-    if *typed != before.0 {
-        *at = 0;
+    if search.text != before.text {
+        search.chosen = 0;
     }
     let has_all = |card: &SceneCard| {
         let text = format!("{} {} {}", card.name, card.title, card.sentence).to_lowercase();
-        (typed.to_lowercase().split_whitespace()).all(|word| text.contains(word))
+        (search.text.to_lowercase().split_whitespace()).all(|word| text.contains(word))
     };
     let found: Vec<usize> = (0..state.scenes.len())
         .filter(|&index| has_all(&state.scenes[index]))
@@ -75,22 +75,22 @@ fn search(state: &mut AppState, ui: &mut Ui, chosen: &mut Option<String>) -> (Ve
         )
     });
     if line.has_focus() {
-        *at = (*at + usize::from(down)).saturating_sub(usize::from(up));
+        search.chosen = (search.chosen + usize::from(down)).saturating_sub(usize::from(up));
     }
-    *at = (*at).min(found.len().saturating_sub(1));
+    search.chosen = search.chosen.min(found.len().saturating_sub(1));
     if enter && line.lost_focus() {
         *chosen = found
-            .get(*at)
+            .get(search.chosen)
             .map(|&index| state.scenes[index].name.clone());
     }
-    let nothing_has_it = ui.memory(|memory| memory.focused().is_none());
-    if nothing_has_it {
+    let nothing_is_focused = ui.memory(|memory| memory.focused().is_none());
+    if nothing_is_focused {
         line.request_focus();
     }
     (found, state.search != before)
 }
 
-/// One scene; returns its title. Enter opens it if `here`.
+/// Shows one scene and returns its title. Enter opens it if `here` is true.
 fn row(state: &AppState, ui: &mut Ui, index: usize, here: bool) -> egui::Response {
     let scene = &state.scenes[index];
     let key = match index {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eframe::egui::Color32;
 use lahar::{Field, Snapshot};
 
-use crate::camera::{V3, add, against, corners, scale, sub};
+use crate::camera::{V3, add, corners, opposite_axis, scale, sub};
 use crate::collider_lines::collider_lines;
 use crate::color::{ColorBy, Range, colors};
 use crate::renderer::{Line, Sprites};
@@ -153,7 +153,7 @@ fn outline(info: &SceneInfo, (min, max): (V3, V3), origin: V3) -> Vec<Line> {
         }
     }
     if info.dimension == 3 {
-        let up = against(info.gravity);
+        let up = opposite_axis(info.gravity);
         let vertical = (0..3).find(|&i| up[i] != 0.0).unwrap_or(1);
         let floor = if up[vertical] > 0.0 {
             min[vertical]

@@ -1,4 +1,4 @@
-//! F12: the window into a PNG file.
+//! Saves the window as a PNG file (F12).
 
 use std::fs::OpenOptions;
 use std::io::{BufWriter, ErrorKind};
@@ -28,7 +28,7 @@ pub(crate) fn save(folder: &Path, scene: &str, image: &ColorImage) -> Result<Pat
         let path = folder.join(format!("lahar-{stem}-{number:03}.png"));
         let why =
             |error: &dyn std::fmt::Display| format!("cannot write {}: {error}", path.display());
-        // A name that is taken stays as it is.
+        // A file that exists is left alone.
         let file = match OpenOptions::new().write(true).create_new(true).open(&path) {
             Err(error) if error.kind() == ErrorKind::AlreadyExists => continue,
             Err(error) => return Err(why(&error)),

@@ -1,4 +1,4 @@
-//! The window: keys, panel, and the scene with the hands in it.
+//! The contents of the window: keys, panel, and the scene with the mouse pointer in it.
 
 use eframe::egui::{self, PointerButton, Rect, Sense, Ui, vec2};
 
@@ -10,7 +10,7 @@ use crate::panel::{panel, player};
 use crate::pointer::{PointerMode, within};
 use crate::scene_list::scene_list;
 
-/// Everything in the window: keys, panel, scene, and what lies over it.
+/// Handles the keys and shows the panel, the scene, and the texts over it.
 pub fn window(state: &mut AppState, ui: &mut Ui) {
     keys(state, ui);
     if state.show_panel {
@@ -22,7 +22,7 @@ pub fn window(state: &mut AppState, ui: &mut Ui) {
     if let Some(frames) = state.recorded_frames() {
         egui::Panel::bottom("player").show(ui, |ui| player(state, ui, frames));
     }
-    // Without a fill: the picture covers it, or the window's own color shows.
+    // No fill is needed: the picture covers the area, or the window's own color shows.
     egui::CentralPanel::default()
         .frame(egui::Frame::NONE)
         .show(ui, |ui| {
@@ -34,8 +34,8 @@ pub fn window(state: &mut AppState, ui: &mut Ui) {
 }
 
 fn keys(state: &mut AppState, ui: &Ui) {
-    // Escape takes the keyboard away from a widget before it closes the window. egui has already
-    // done so when this runs: what counts is who had it in the last frame.
+    // Escape takes the keyboard away from a widget before it closes the window. egui has done so already when this
+    // runs, so the focus in the frame before counts as well.
     let id = egui::Id::unique("keyboard was taken");
     let focused = ui.ctx().memory(|memory| memory.focused().is_some());
     let was_focused = ui.ctx().data_mut(|data| {
@@ -45,25 +45,26 @@ fn keys(state: &mut AppState, ui: &Ui) {
     });
     let focused = focused || was_focused;
     let (asked, held) = ui.input(|input| {
-        let held = held_direction(input, state.held_gravity);
+        let held = held_direction(input, state.gravity_key);
         (actions(input, focused), held.filter(|_| !focused))
     });
-    let holds = state.holds_gravity();
-    if holds {
+    let needs_key = state.gravity_needs_key();
+    if needs_key {
         let latest = asked.iter().rev().find_map(|action| match action {
             Action::Gravity(direction) => Some(*direction),
             _ => None,
         });
-        state.hold_gravity(latest.or(held));
+        state.set_gravity_key(latest.or(held));
     }
     for action in asked {
-        if !(holds && matches!(action, Action::Gravity(_))) {
+        if !(needs_key && matches!(action, Action::Gravity(_))) {
             state.act(action);
         }
     }
 }
 
-/// Room for each side: in rows and columns, so that each is seen as large as can be.
+/// Divides `rect` into an area for each side, in rows and columns, such that scenes of this aspect are seen as large as
+/// possible.
 pub fn cells(rect: Rect, sides: usize, aspect: f64) -> Vec<Rect> {
     let sides = sides.max(1);
     let cell = |columns: usize| {
@@ -86,9 +87,9 @@ pub fn cells(rect: Rect, sides: usize, aspect: f64) -> Vec<Rect> {
         .collect()
 }
 
-/// Width over height of the scene as it is seen, about.
+/// The approximate width over height of the scene as it is seen.
 fn scene_aspect(state: &AppState) -> f64 {
-    /// A box from a corner.
+    /// Of a box seen from a corner.
     const SOLID: f64 = 1.4;
     let (min, max) = state.scenery.extent;
     let size = sub(max, min);
@@ -117,7 +118,7 @@ fn scene(state: &mut AppState, ui: &mut Ui, rect: Rect, response: &egui::Respons
         if side > 0 {
             overlay::edges(ui, rect, *cell);
         }
-        overlay::hand(state, ui, *cell);
+        overlay::pointer(state, ui, *cell);
         overlay::status(state, ui, *cell, side);
     }
     overlay::legend(state, ui, cells[0]);
@@ -166,8 +167,8 @@ fn pointer(state: &mut AppState, ui: &Ui, cells: &[Rect], response: &egui::Respo
     let by = response.drag_delta() / rect.height();
     let (x, y) = (f64::from(by.x), f64::from(-by.y));
     let recorded = state.recorded_frames().is_some();
-    let [of_left, of_right] = state.hand.buttons();
-    let grip = if recorded {
+    let [of_left, of_right] = state.pointer_tool.button_modes();
+    let mode = if recorded {
         None
     } else if modifiers.ctrl && left {
         Some(PointerMode::Drag)
@@ -180,19 +181,19 @@ fn pointer(state: &mut AppState, ui: &Ui, cells: &[Rect], response: &egui::Respo
     } else {
         None
     };
-    match (grip, at) {
-        (Some(grip), Some(at)) => {
+    match (mode, at) {
+        (Some(mode), Some(at)) => {
             let velocity = [
                 f64::from(2.0 * velocity.x / rect.width()),
                 f64::from(-2.0 * velocity.y / rect.height()),
             ];
-            state.hold(side, at, grip, velocity);
+            state.press_pointer(side, at, mode, velocity);
         }
-        _ => state.release(),
+        _ => state.release_pointer(),
     }
     if let Some(camera) = state.camera.as_mut() {
         let moves = middle || left && (modifiers.alt || recorded && !solid);
-        let orbits = !moves && solid && grip.is_none() && (left || right);
+        let orbits = !moves && solid && mode.is_none() && (left || right);
         if moves {
             camera.pan(x, y);
         } else if orbits {

@@ -1,4 +1,4 @@
-//! The real window: eframe around [`AppState`] and [`Solver`].
+//! The window on the screen: eframe around [`AppState`] and [`Solver`].
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use crate::scenes::SceneSource;
 use crate::solver::Solver;
 use crate::{color, renderer, screenshot, view};
 
-/// What eframe runs.
+/// The application that eframe runs.
 pub(crate) struct Window {
     state: AppState,
     solver: Solver,
@@ -43,7 +43,7 @@ impl Window {
             }
         }
         let repaint = context.egui_ctx.clone();
-        solver.on_news(move || repaint.request_repaint_after(pause));
+        solver.on_new_state(move || repaint.request_repaint_after(pause));
         style(&context.egui_ctx);
         Self {
             state,
@@ -66,7 +66,7 @@ impl Window {
                     let pictures = self.pictures.0.clone();
                     let repaint = context.clone();
                     context.request_screenshot(move |picture| {
-                        // Nobody to send to: the window is gone, and with it the wish.
+                        // The receiver is gone only with the window, which nobody misses the picture of.
                         let _ = pictures.send(picture);
                         repaint.request_repaint();
                     });
@@ -75,7 +75,7 @@ impl Window {
         }
     }
 
-    /// One scene after the other, on a thread of their own: they have to be built to be drawn.
+    /// Draws small pictures of all scenes on a thread of its own, since scenes must be built to be drawn.
     fn draw_thumbnails(&mut self, context: &egui::Context) {
         let repaint = context.clone();
         let (sender, receiver) = channel();
@@ -90,7 +90,7 @@ impl Window {
                 }
             }
         };
-        // Without a thread there are no pictures, and the list is as good.
+        // Without a thread the list has no pictures; it is still usable.
         let thread = std::thread::Builder::new().name("lahar thumbnails".into());
         self.thumbnails = thread.spawn(draw).ok().map(|_| receiver);
     }
@@ -105,20 +105,20 @@ impl Window {
     }
 }
 
-/// From news to its picture where the processor draws: what a picture takes, the solver lacks.
+/// Delay between a new state and its picture where the processor draws, since drawing takes time from the solver.
 const SOFTWARE_PAUSE: Duration = Duration::from_millis(50);
 
-/// Drawn at least this often.
+/// The window is drawn at least this often.
 const IDLE: Duration = Duration::from_millis(100);
 
-/// Largest small picture: two pixels a point.
+/// Size of a scene's small picture, two pixels per point.
 const THUMBNAIL_PIXELS: [u32; 2] = [224, 128];
 
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
         let context = ui.ctx().clone();
-        if let Some(shown) = self.solver.newest() {
-            self.state.receive(shown);
+        if let Some(state) = self.solver.newest() {
+            self.state.receive(state);
         }
         while let Ok(picture) = self.pictures.1.try_recv() {
             let saved = screenshot::save(&self.screenshots, &self.state.scene, &picture);
@@ -126,7 +126,7 @@ impl eframe::App for Window {
                 Ok(path) => format!("Saved {}", path.display()),
                 Err(why) => why,
             };
-            self.state.say(text, ui.input(|input| input.time));
+            self.state.notify(text, ui.input(|input| input.time));
         }
         self.take_thumbnails(&context);
         view::window(&mut self.state, ui);
@@ -134,8 +134,8 @@ impl eframe::App for Window {
         if let Some(meter) = &mut self.meter {
             meter.drawn(self.state.sides());
         }
-        // The solver asks for pictures when it has something new; the rest is for what passes by
-        // itself: a notice, a hand that stopped.
+        // The solver asks for a picture when it has a new state. Drawing now and then besides lets notices disappear
+        // and a resting pointer stop dragging.
         context.request_repaint_after(IDLE);
     }
 
@@ -144,7 +144,7 @@ impl eframe::App for Window {
     }
 }
 
-/// Dark, and in the scene's colors.
+/// Sets a dark theme that suits the scene's colors.
 pub(crate) fn style(context: &egui::Context) {
     context.set_theme(egui::Theme::Dark);
     context.style_mut_of(egui::Theme::Dark, |style| {

@@ -1,20 +1,20 @@
-//! Simulated time against the clock's, and rates.
+//! Simulated time against real time, and rates.
 
 use std::time::{Duration, Instant};
 
-/// How late a frame may be and still be made up for \[s\]; later ones set the clock anew.
-const GRACE: f64 = 0.05;
-/// Rates are taken over this long.
+/// The largest delay of a frame that later frames make up for, in real time \[s\].
+const MAX_MADE_UP_DELAY: f64 = 0.05;
+/// The time over which rates are measured.
 const RATE_INTERVAL: Duration = Duration::from_millis(500);
 
-/// Simulated time against the clock's.
+/// Tells when a simulated time is due in real time.
 pub(super) struct Clock {
     start: Instant,
     time: f64,
 }
 
 impl Clock {
-    /// It is `time` now.
+    /// Starts at the simulated time `time` \[s\].
     pub(super) fn at(time: f64) -> Self {
         Self {
             start: Instant::now(),
@@ -22,23 +22,23 @@ impl Clock {
         }
     }
 
-    /// How long until simulated `time` is due; `None`: it is.
+    /// The wait until the simulated time `time` is due, at `speed` simulated seconds per second. `None` if it is due.
     pub(super) fn until(&self, time: f64, speed: f64) -> Option<Duration> {
         let wait = (time - self.time) / speed - self.start.elapsed().as_secs_f64();
-        // A day at most: speeds near zero are asked again later.
+        // A day at most: with speeds near zero the caller asks again later.
         (wait > 0.0).then(|| Duration::from_secs_f64(wait.min(86_400.0)))
     }
 
-    /// Lateness beyond [`GRACE`] is not made up for: never faster than asked.
+    /// Restarts the clock at `time` if that is later than [`MAX_MADE_UP_DELAY`] after it was due.
     pub(super) fn forgive(&mut self, time: f64, speed: f64) {
         let due = self.time + speed * self.start.elapsed().as_secs_f64();
-        if due - time > GRACE * speed {
+        if due - time > MAX_MADE_UP_DELAY * speed {
             *self = Self::at(time);
         }
     }
 }
 
-/// Something that grows, against the clock, over [`RATE_INTERVAL`].
+/// The growth of a value per second of real time, over [`RATE_INTERVAL`].
 pub(super) struct Rate {
     start: Instant,
     from: f64,
@@ -46,7 +46,7 @@ pub(super) struct Rate {
 }
 
 impl Rate {
-    /// It is at `value` now.
+    /// Starts at `value`.
     pub(super) fn from(value: f64) -> Self {
         Self {
             start: Instant::now(),
@@ -55,13 +55,13 @@ impl Rate {
         }
     }
 
-    /// Counts anew from `value`; what was measured stands until there is better.
+    /// Starts again at `value`. The rate stays until there is a new one.
     pub(super) fn restart(&mut self, value: f64) {
         (self.start, self.from) = (Instant::now(), value);
     }
 
-    /// Growth per second of the clock, now that it is at `value`.
-    pub(super) fn at(&mut self, value: f64) -> f64 {
+    /// Returns the newest rate, given the present value \[1/s\].
+    pub(super) fn update(&mut self, value: f64) -> f64 {
         let elapsed = self.start.elapsed();
         if elapsed >= RATE_INTERVAL {
             self.last = (value - self.from) / elapsed.as_secs_f64();
@@ -80,11 +80,11 @@ pub(super) struct Throughput {
 }
 
 impl Throughput {
-    /// So much was done in so long.
+    /// Adds particle-steps and the time spent computing them.
     pub(super) fn add(&mut self, busy: Duration, particle_steps: u64) {
         self.busy += busy;
         self.particle_steps += particle_steps;
-        // The first number soon, the next ones steady.
+        // The first rate comes soon, the next ones are steady.
         if self.busy >= RATE_INTERVAL || self.last == 0.0 && !self.busy.is_zero() {
             self.last = self.particle_steps as f64 / self.busy.as_secs_f64();
             if self.busy >= RATE_INTERVAL {
@@ -93,7 +93,7 @@ impl Throughput {
         }
     }
 
-    /// \[1/s\]; 0 before anything was done.
+    /// The newest rate \[1/s\]; 0 before there is one.
     pub(super) fn per_second(&self) -> f64 {
         self.last
     }

@@ -1,13 +1,13 @@
-//! The simulation on a thread of its own, paced by the clock, never by the display.
+//! The solver: simulations on a thread of their own, paced by real time and never by the display.
 //!
 //! ```text
-//!   window ── Order ──▶ channel ──▶ solver ── Shown ──▶ triple buffer ──▶ window
-//!             (sending never waits)          (writing and reading never wait)
+//!   window ── Order ──▶ channel ──▶ solver ── SolverState ──▶ triple buffer ──▶ window
+//!             (sending never waits)               (writing and reading never wait)
 //! ```
 //!
-//! Frames end at multiples of 1/frame_rate of simulated time, whatever the display does, so that a
-//! scene left alone has the same bits here as in a headless run. Between substeps the solver looks
-//! for orders: a key is answered within a substep, also where a frame takes seconds.
+//! Frames end at multiples of 1/frame_rate of simulated time, whatever the display does. So a scene left alone has the
+//! same bits here as in a headless run. Between substeps the solver looks for orders: it answers a key within a substep,
+//! even where a frame takes seconds.
 
 mod clock;
 mod live;
@@ -24,131 +24,131 @@ use triple_buffer::{Output, TripleBuffer};
 use crate::scenes::{Changes, SceneInfo, SceneSource};
 use worker::Worker;
 
-/// A scene, and how it is to run.
+/// A scene to open, and its settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneRequest {
-    /// By name or path; the folder of a run is replayed.
+    /// The scene's name or path, or the folder of a run to replay.
     pub scene: String,
-    /// Laid over it.
+    /// Keys and values that override the scene's.
     pub changes: Changes,
-    /// Several values of a key, side by side.
+    /// Values of a key to run side by side.
     pub comparison: Option<Comparison>,
 }
 
-/// What the window may ask of the solver.
+/// An order of the window to the solver.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Order {
     /// Opens a scene.
     Open(SceneRequest),
-    /// The same scene, from its start.
+    /// Restarts the scene.
     Restart,
-    /// Stops the clock, or lets it run.
+    /// Pauses if true, continues if false.
     Pause(bool),
-    /// One substep, while paused; one frame of a recording.
+    /// Takes one substep while paused; in a recording, shows the next frame.
     Substep,
-    /// To a frame of a recording, counted from 0.
+    /// Shows a frame of a recording, counted from 0.
     Seek(usize),
-    /// Simulated seconds per second, at most.
+    /// Sets the largest speed, in simulated seconds per second.
     Speed(f64),
-    /// Fields that snapshots should have, beyond [`ALWAYS`].
+    /// Sets the fields that snapshots have in addition to [`ALWAYS`].
     Fields(Vec<Field>),
-    /// Passed on to the simulation.
+    /// Passes a command on to the simulations.
     Command(Command),
 }
 
-/// Fields that every snapshot has.
+/// The fields that every snapshot has.
 pub const ALWAYS: [Field; 3] = [Field::Position, Field::Body, Field::Volume0];
 
-/// Numbers for the panel.
+/// The numbers that the panel shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Readouts {
     /// Simulated time \[s\].
     pub time: f64,
-    /// Simulated seconds per second of the clock, over the last moment.
+    /// Simulated seconds per second, over the last moments.
     pub real_time: f64,
-    /// Substeps of the last whole frame.
+    /// Number of substeps of the last finished frame.
     pub substeps_per_frame: u64,
-    /// Substeps since the start.
+    /// Number of substeps since the start.
     pub substeps: u64,
-    /// The last substep \[s\].
+    /// Length of the last substep \[s\].
     pub dt: f64,
-    /// What limited it.
+    /// The reason why it was not longer.
     pub limit: DtLimit,
-    /// Particles × substeps per second spent computing \[1/s\].
+    /// Particles × substeps per second of computing \[1/s\].
     pub particle_steps_per_second: f64,
-    /// Particles now.
+    /// Number of particles.
     pub particles: usize,
-    /// Frames that had to be tried again with a shorter time step.
+    /// Number of retries with a shorter dt.
     pub retries: u64,
-    /// The frame of a recording, counted from 0.
+    /// The frame of a recording that is shown, counted from 0.
     pub frame: usize,
 }
 
-/// One of the simulations that run side by side; the only one as a rule.
+/// One of the simulations that run side by side. As a rule it is the only one.
 #[derive(Clone, Debug)]
 pub struct Side {
-    /// What tells it from the others; empty when it is alone.
+    /// Its value of the compared setting, as a title; empty if it is the only one.
     pub title: String,
-    /// The particles.
+    /// A copy of the particles.
     pub snapshot: Arc<Snapshot>,
-    /// Numbers for the panel.
+    /// The numbers that the panel shows.
     pub readouts: Readouts,
-    /// Why a frame was last tried again.
+    /// The last retry, in words.
     pub retry: Option<String>,
 }
 
-/// What the solver is doing.
+/// The state of playing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Condition {
-    /// Building a scene.
+    /// A scene is being built.
     #[default]
     Opening,
-    /// The clock runs.
+    /// The simulation or the recording runs.
     Running,
-    /// The clock stands.
+    /// The simulation or the recording is paused.
     Paused,
-    /// The last frame of a recording.
+    /// The last frame of a recording is shown.
     Ended,
-    /// It cannot go on, and why. [`Order::Restart`] and [`Order::Open`] help.
+    /// The scene cannot go on, for this reason, until [`Order::Restart`] or [`Order::Open`].
     Failed(String),
 }
 
-/// All that the window shows, at one moment.
+/// The solver at one moment: everything that the window shows.
 #[derive(Clone, Debug, Default)]
-pub struct Shown {
-    /// Grows with every publication.
+pub struct SolverState {
+    /// Grows with every state that is published.
     pub number: u64,
-    /// Grows whenever a scene is opened or restarted.
+    /// Grows with every scene that is opened or restarted.
     pub opened: u64,
-    /// `None` before the first scene is built.
+    /// The open scene; `None` before the first one is built.
     pub info: Option<Arc<SceneInfo>>,
-    /// What there is to see; none before the first scene is built.
+    /// The simulations side by side, or the recording; none before the first scene is built.
     pub sides: Vec<Side>,
-    /// What the solver is doing.
+    /// The state of playing.
     pub condition: Condition,
 }
 
-/// What is called after each publication, from the solver's thread.
-type News = Arc<OnceLock<Box<dyn Fn() + Send + Sync>>>;
+/// A function that the solver's thread calls after each publication.
+type Listener = Arc<OnceLock<Box<dyn Fn() + Send + Sync>>>;
 
-/// The window's end of the solver. Dropping it ends the thread after the substep at hand.
+/// The window's handle on the solver. Dropping it ends the solver's thread after the present substep.
 pub struct Solver {
     orders: Sender<Order>,
-    shown: Output<Shown>,
-    news: News,
+    states: Output<SolverState>,
+    listener: Listener,
 }
 
 impl Solver {
-    /// Starts so many threads, 0 for as many as the machine has; nothing runs until [`Order::Open`].
+    /// Starts the solver on this number of threads, 0 for as many as the machine has. Nothing runs until [`Order::Open`].
     ///
     /// # Errors
-    /// The system refuses threads.
+    /// The system refuses to start threads.
     pub fn start(source: Arc<dyn SceneSource>, threads: usize) -> Result<Self, String> {
         let (orders, inbox) = channel();
-        let (input, shown) = TripleBuffer::new(&Shown::default()).split();
-        let news = News::default();
-        let worker = Worker::new(source, input, Arc::clone(&news));
-        // The worker is one of the pool's threads: what it divides among them needs no waking.
+        let (input, states) = TripleBuffer::new(&SolverState::default()).split();
+        let listener = Listener::default();
+        let worker = Worker::new(source, input, Arc::clone(&listener));
+        // The worker is one of the pool's threads, so that it need not wake the pool to divide work.
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|index| format!("lahar-solver-{index}"))
@@ -157,27 +157,27 @@ impl Solver {
         pool.spawn(move || worker.run(&inbox));
         Ok(Self {
             orders,
-            shown,
-            news,
+            states,
+            listener,
         })
     }
 
-    /// Calls `tell` whenever there is something newer to show; a second `tell` is not taken.
-    pub fn on_news(&self, tell: impl Fn() + Send + Sync + 'static) {
-        self.news.get_or_init(|| Box::new(tell));
+    /// Calls `listener` whenever there is a newer state. Only the first listener is kept.
+    pub fn on_new_state(&self, listener: impl Fn() + Send + Sync + 'static) {
+        self.listener.get_or_init(|| Box::new(listener));
     }
 
-    /// Sends an order; never waits.
+    /// Sends an order. Never waits.
     pub fn order(&self, order: Order) {
-        // The receiver is gone only if its thread died, which `Condition::Failed` has told.
+        // The receiver is gone only if its thread died, which is no reason to end the window.
         let _ = self.orders.send(order);
     }
 
-    /// The newest state if it is newer than the last one taken; never waits.
-    pub fn newest(&mut self) -> Option<Shown> {
-        self.shown
+    /// The newest state, if there is a newer one than the last one taken. Never waits.
+    pub fn newest(&mut self) -> Option<SolverState> {
+        self.states
             .update()
-            .then(|| self.shown.output_buffer().clone())
+            .then(|| self.states.output_buffer().clone())
     }
 }
 

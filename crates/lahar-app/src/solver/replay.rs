@@ -1,4 +1,4 @@
-//! A finished run, frame by frame, as it was written.
+//! A finished run, replayed frame by frame.
 
 use std::sync::Arc;
 
@@ -7,17 +7,17 @@ use lahar_io::output::Recording;
 
 use super::{Readouts, Side};
 
-/// The frame in sight, and where the next one comes from.
+/// A recording and the frame of it that is shown.
 pub(super) struct Replay {
     recording: Recording,
     frame: usize,
     snapshot: Arc<Snapshot>,
-    /// The frame that follows, once it was looked at for its time.
+    /// The next frame, read ahead because its time decides when it is shown; `None` at the end.
     next: Option<Arc<Snapshot>>,
 }
 
 impl Replay {
-    /// At the first frame.
+    /// Shows the first frame.
     pub(super) fn new(recording: Recording) -> Result<Self, String> {
         let snapshot = Arc::new(recording.frame(0).map_err(|error| error.to_string())?);
         let mut replay = Self {
@@ -26,11 +26,11 @@ impl Replay {
             snapshot,
             next: None,
         };
-        replay.look_ahead()?;
+        replay.read_ahead()?;
         Ok(replay)
     }
 
-    fn look_ahead(&mut self) -> Result<(), String> {
+    fn read_ahead(&mut self) -> Result<(), String> {
         self.next = None;
         if self.frame + 1 < self.recording.len() {
             let next = self.recording.frame(self.frame + 1);
@@ -39,27 +39,27 @@ impl Replay {
         Ok(())
     }
 
-    /// Time of the frame in sight \[s\].
+    /// Time of the frame shown \[s\].
     pub(super) fn time(&self) -> f64 {
         self.snapshot.time
     }
 
-    /// Time of the next one \[s\]; `None` at the end.
+    /// Time of the next frame \[s\]; `None` at the end.
     pub(super) fn next_time(&self) -> Option<f64> {
         self.next.as_ref().map(|next| next.time)
     }
 
-    /// One frame on; none at the end.
+    /// Shows the next frame; at the end, does nothing.
     pub(super) fn advance(&mut self) -> Result<(), String> {
         if let Some(next) = self.next.take() {
             self.frame += 1;
             self.snapshot = next;
-            self.look_ahead()?;
+            self.read_ahead()?;
         }
         Ok(())
     }
 
-    /// Another frame, or the last one.
+    /// Shows another frame, or the last one if there is none of this number.
     pub(super) fn seek(&mut self, frame: usize) -> Result<(), String> {
         let frame = frame.min(self.recording.len() - 1);
         if frame == self.frame + 1 {
@@ -69,12 +69,12 @@ impl Replay {
             let snapshot = self.recording.frame(frame);
             self.snapshot = Arc::new(snapshot.map_err(|error| error.to_string())?);
             self.frame = frame;
-            self.look_ahead()?;
+            self.read_ahead()?;
         }
         Ok(())
     }
 
-    /// What there is to see of it now.
+    /// The frame shown, with its numbers.
     pub(super) fn side(&self, real_time: f64) -> Side {
         Side {
             title: String::new(),

@@ -1,4 +1,4 @@
-//! The thread: obeys orders, works when the next frame is due, shows what came of it.
+//! The solver's thread: it obeys orders, computes the next frame when that is due, and publishes its state.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -11,50 +11,56 @@ use triple_buffer::Input;
 use super::clock::{Clock, Rate};
 use super::live::{Live, Runner};
 use super::replay::Replay;
-use super::{ALWAYS, Condition, News, Order, SceneRequest, Shown, panic_report};
+use super::{ALWAYS, Condition, Listener, Order, SceneRequest, SolverState, panic_report};
 use crate::scenes::{OpenedScene, SceneContent, SceneSource};
 
-/// Snapshots are not taken more often than this, unless the window waits for one.
+/// The shortest time between two snapshots, unless the window waits for one.
 const SNAPSHOT_INTERVAL: Duration = Duration::from_millis(8);
-/// Within a frame that takes long, a snapshot this often.
+/// The time between two snapshots within a frame that takes long.
 const SNAPSHOT_WITHIN_FRAME: Duration = Duration::from_millis(50);
 
-/// What is played.
+/// The simulations or the recording that is played.
 enum Play {
     Nothing,
     Live(Live),
     Replay(Box<Replay>),
 }
 
-/// The solver's end.
+/// The solver's side of the channels.
 pub(super) struct Worker {
     source: Arc<dyn SceneSource>,
-    output: Input<Shown>,
-    news: News,
-    shown: Shown,
+    output: Input<SolverState>,
+    listener: Listener,
+    /// The state as it was last published, or is to be published next.
+    state: SolverState,
     wanted: Option<SceneRequest>,
     play: Play,
     paused: bool,
     speed: f64,
     fields: Vec<Field>,
-    /// The frame to go to once no order is left: dragging a slider asks for many.
+    /// The frame to show once no order is left, because dragging a slider asks for many.
     seek: Option<usize>,
     clock: Clock,
     real_time: Rate,
     published: Instant,
+    /// True if the state is newer than the one last published.
     changed: bool,
 }
 
-/// The window's end is gone.
-struct Gone;
+/// The window has dropped its end of the channel.
+struct Disconnected;
 
 impl Worker {
-    pub(super) fn new(source: Arc<dyn SceneSource>, output: Input<Shown>, news: News) -> Self {
+    pub(super) fn new(
+        source: Arc<dyn SceneSource>,
+        output: Input<SolverState>,
+        listener: Listener,
+    ) -> Self {
         Self {
             source,
             output,
-            news,
-            shown: Shown::default(),
+            listener,
+            state: SolverState::default(),
             wanted: None,
             play: Play::Nothing,
             paused: false,
@@ -73,10 +79,10 @@ impl Worker {
             match self.next_order(inbox) {
                 Ok(Some(order)) => {
                     self.obey(order);
-                    continue; // all orders before the next substep
+                    continue; // all orders are obeyed before the next substep
                 }
                 Ok(None) => {}
-                Err(Gone) => return,
+                Err(Disconnected) => return,
             }
             if self.is_running() && self.wait().is_none() {
                 self.work();
@@ -84,21 +90,21 @@ impl Worker {
         }
     }
 
-    /// Waits for an order as long as there is nothing else to do.
-    fn next_order(&mut self, inbox: &Receiver<Order>) -> Result<Option<Order>, Gone> {
+    /// Returns the next order. Waits for one as long as there is nothing else to do.
+    fn next_order(&mut self, inbox: &Receiver<Order>) -> Result<Option<Order>, Disconnected> {
         let order = match inbox.try_recv() {
             Ok(order) => return Ok(Some(order)),
-            Err(TryRecvError::Disconnected) => return Err(Gone),
+            Err(TryRecvError::Disconnected) => return Err(Disconnected),
             Err(TryRecvError::Empty) => {
                 if let Some(frame) = self.seek.take() {
                     self.go_to(frame);
                 }
                 let wait = self.wait().filter(|_| self.is_running());
                 if self.is_running() && wait.is_none() {
-                    return Ok(None); // `work` says when there is something to show
+                    return Ok(None); // `work` publishes when it is time
                 }
                 if self.changed {
-                    self.publish(); // nothing is newer: what waits to be seen is shown
+                    self.publish();
                 }
                 match wait {
                     None => inbox.recv().map_err(|_| RecvTimeoutError::Disconnected),
@@ -109,7 +115,7 @@ impl Worker {
         match order {
             Ok(order) => Ok(Some(order)),
             Err(RecvTimeoutError::Timeout) => Ok(None),
-            Err(RecvTimeoutError::Disconnected) => Err(Gone),
+            Err(RecvTimeoutError::Disconnected) => Err(Disconnected),
         }
     }
 
@@ -126,7 +132,7 @@ impl Worker {
             Order::Pause(paused) => {
                 self.paused = paused;
                 self.set_clock();
-                self.settle();
+                self.update_condition();
             }
             Order::Substep => self.substep(),
             Order::Seek(frame) => self.seek = Some(frame),
@@ -151,25 +157,25 @@ impl Worker {
         let Some(wanted) = self.wanted.clone() else {
             return;
         };
-        self.shown.condition = Condition::Opening;
-        self.publish(); // the old particles stay in sight while the new ones are seeded
-        let opened = catch_unwind(AssertUnwindSafe(|| stages(&*self.source, &wanted)))
+        self.state.condition = Condition::Opening;
+        self.publish(); // the old particles are shown until the new ones are seeded
+        let opened = catch_unwind(AssertUnwindSafe(|| open_scenes(&*self.source, &wanted)))
             .unwrap_or_else(|panic| Err(panic_report(&*panic)))
-            .and_then(|stages| self.begin(stages));
+            .and_then(|scenes| self.begin(scenes));
         if let Err(why) = opened {
             self.fail(why);
         }
-        self.shown.opened += 1;
+        self.state.opened += 1;
         self.publish();
     }
 
-    fn begin(&mut self, stages: Vec<(String, OpenedScene)>) -> Result<(), String> {
+    fn begin(&mut self, scenes: Vec<(String, OpenedScene)>) -> Result<(), String> {
         let mut simulations = vec![];
         let mut info = None;
         let mut replay = None;
-        for (title, stage) in stages {
-            info.get_or_insert(stage.info);
-            match stage.content {
+        for (title, scene) in scenes {
+            info.get_or_insert(scene.info);
+            match scene.content {
                 SceneContent::Simulation(driver) => simulations.push(Runner::new(title, *driver)),
                 SceneContent::Recording(recording) => replay = Some(Replay::new(*recording)?),
             }
@@ -181,26 +187,26 @@ impl Worker {
             Some(replay) => Play::Replay(Box::new(replay)),
             None => Play::Live(Live::new(simulations, info.frame_rate)),
         };
-        self.shown.info = Some(Arc::new(info));
-        self.shown.condition = Condition::Running;
+        self.state.info = Some(Arc::new(info));
+        self.state.condition = Condition::Running;
         self.seek = None;
         self.real_time = Rate::from(0.0);
         self.set_clock();
-        self.settle();
+        self.update_condition();
         Ok(())
     }
 
     fn fail(&mut self, why: String) {
-        self.play = Play::Nothing; // whatever it is now, it is not to be trusted
-        self.shown.condition = Condition::Failed(why);
+        self.play = Play::Nothing; // its state may be invalid
+        self.state.condition = Condition::Failed(why);
         self.changed = true;
     }
 
-    /// Says whether the clock runs, unless something worse is to be said.
-    fn settle(&mut self) {
-        if !matches!(self.shown.condition, Condition::Failed(_)) {
+    /// Sets the condition by pause and end, unless the scene has failed.
+    fn update_condition(&mut self) {
+        if !matches!(self.state.condition, Condition::Failed(_)) {
             let at_end = matches!(&self.play, Play::Replay(replay) if replay.next_time().is_none());
-            self.shown.condition = if at_end {
+            self.state.condition = if at_end {
                 Condition::Ended
             } else if self.paused {
                 Condition::Paused
@@ -220,10 +226,10 @@ impl Worker {
     }
 
     fn is_running(&self) -> bool {
-        self.shown.condition == Condition::Running && !matches!(self.play, Play::Nothing)
+        self.state.condition == Condition::Running && !matches!(self.play, Play::Nothing)
     }
 
-    /// How long until the next frame is due; `None`: it is, or one is at work.
+    /// The wait until the next frame is due. `None` if it is due, or if one has begun.
     fn wait(&self) -> Option<Duration> {
         match &self.play {
             Play::Nothing => None,
@@ -241,7 +247,7 @@ impl Worker {
         self.real_time.restart(self.time());
     }
 
-    /// A substep, or the last few of a frame; a frame of a recording.
+    /// Takes a substep, or shows the next frame of a recording.
     fn work(&mut self) {
         let done = match &mut self.play {
             Play::Nothing => return,
@@ -250,14 +256,14 @@ impl Worker {
         };
         self.changed = true;
         match done {
-            Err(why) => self.fail_in_sight(why),
+            Err(why) => self.publish_and_fail(why),
             Ok(false) => {
                 if self.published.elapsed() > SNAPSHOT_WITHIN_FRAME && self.output.consumed() {
                     self.publish();
                 }
             }
             Ok(true) => {
-                self.settle();
+                self.update_condition();
                 self.clock.forgive(self.time(), self.speed);
                 if self.output.consumed() || self.published.elapsed() > SNAPSHOT_INTERVAL {
                     self.publish();
@@ -266,16 +272,16 @@ impl Worker {
         }
     }
 
-    /// The particles as they were when it failed stay in sight.
-    fn fail_in_sight(&mut self, why: String) {
+    /// Fails, but publishes the particles as they were at the failure before.
+    fn publish_and_fail(&mut self, why: String) {
         if catch_unwind(AssertUnwindSafe(|| self.publish())).is_err() {
-            self.changed = true; // not even a picture could be taken of it
+            self.changed = true; // taking a snapshot panicked too
         }
         self.fail(why);
     }
 
     fn substep(&mut self) {
-        if !self.paused || matches!(self.shown.condition, Condition::Failed(_)) {
+        if !self.paused || matches!(self.state.condition, Condition::Failed(_)) {
             return;
         }
         let done = match &mut self.play {
@@ -284,8 +290,8 @@ impl Worker {
             Play::Replay(replay) => replay.advance(),
         };
         match done {
-            Ok(()) => self.settle(),
-            Err(why) => self.fail_in_sight(why),
+            Ok(()) => self.update_condition(),
+            Err(why) => self.publish_and_fail(why),
         }
         self.publish();
     }
@@ -295,7 +301,7 @@ impl Worker {
             match replay.seek(frame) {
                 Ok(()) => {
                     self.set_clock();
-                    self.settle();
+                    self.update_condition();
                 }
                 Err(why) => self.fail(why),
             }
@@ -303,36 +309,36 @@ impl Worker {
     }
 
     fn publish(&mut self) {
-        let real_time = self.real_time.at(self.time());
+        let real_time = self.real_time.update(self.time());
         match &self.play {
             Play::Nothing => {}
-            Play::Live(live) => self.shown.sides = live.sides(&self.fields, real_time),
-            Play::Replay(replay) => self.shown.sides = vec![replay.side(real_time)],
+            Play::Live(live) => self.state.sides = live.sides(&self.fields, real_time),
+            Play::Replay(replay) => self.state.sides = vec![replay.side(real_time)],
         }
-        self.shown.number += 1;
-        self.output.write(self.shown.clone());
-        if let Some(tell) = self.news.get() {
-            tell();
+        self.state.number += 1;
+        self.output.write(self.state.clone());
+        if let Some(listener) = self.listener.get() {
+            listener();
         }
         self.published = Instant::now();
         self.changed = false;
     }
 }
 
-/// What is wanted, built: one stage, or one for each value of a comparison.
-fn stages(
+/// Builds the scene of a request, once or for each value of its comparison.
+fn open_scenes(
     source: &dyn SceneSource,
     wanted: &SceneRequest,
 ) -> Result<Vec<(String, OpenedScene)>, String> {
     let Some(comparison) = &wanted.comparison else {
-        let stage = source.open(&wanted.scene, &wanted.changes)?;
-        return Ok(vec![(String::new(), stage)]);
+        let scene = source.open(&wanted.scene, &wanted.changes)?;
+        return Ok(vec![(String::new(), scene)]);
     };
     (comparison.titles().zip(comparison.overrides(&wanted.changes)))
         .map(|(title, changes)| {
-            let stage = source.open(&wanted.scene, &changes)?;
-            match stage.content {
-                SceneContent::Simulation(_) => Ok((title, stage)),
+            let scene = source.open(&wanted.scene, &changes)?;
+            match scene.content {
+                SceneContent::Simulation(_) => Ok((title, scene)),
                 SceneContent::Recording(_) => Err(format!(
                     "{} is a finished run: it cannot be compared with other settings of itself; open its scene",
                     wanted.scene

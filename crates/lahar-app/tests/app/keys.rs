@@ -166,7 +166,7 @@ fn the_list_reaches_every_scene_by_keys() {
         harness.key_press(Key::L);
         harness.run();
         assert_eq!(
-            harness.state().search.0,
+            harness.state().search.text,
             "",
             "the L that opened it is not typed"
         );
@@ -227,7 +227,10 @@ fn a_scenes_own_speed_and_hand_are_taken_over() {
     let harness = harness("held");
     let state = harness.state();
     assert_eq!(state.speed, 0.5);
-    assert_eq!((state.hand.pull, state.hand.reach), (100.0, f64::INFINITY));
+    assert_eq!(
+        (state.pointer_tool.pull, state.pointer_tool.reach),
+        (100.0, f64::INFINITY)
+    );
 }
 
 #[test]

@@ -17,7 +17,7 @@ use eframe::egui::Vec2;
 use egui_kittest::Harness;
 use lahar_app::app_state::{AppState, Effect};
 use lahar_app::scenes::SceneSource;
-use lahar_app::solver::{Order, Readouts, SceneRequest, Shown, Solver};
+use lahar_app::solver::{Order, Readouts, SceneRequest, Solver, SolverState};
 use lahar_app::{DEFAULT_SCENE, view};
 
 /// A scene alone and as it is.
@@ -33,7 +33,7 @@ fn open(scene: &str) -> Order {
 }
 
 /// Numbers of the first side.
-fn first(shown: &Shown) -> Readouts {
+fn first(shown: &SolverState) -> Readouts {
     shown
         .sides
         .first()
@@ -41,7 +41,7 @@ fn first(shown: &Shown) -> Readouts {
 }
 
 /// What the solver would show of a scene at its start.
-fn shown(name: &str, opened: u64) -> Shown {
+fn shown(name: &str, opened: u64) -> SolverState {
     let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Pause(true));
     solver.order(open(name));
@@ -51,7 +51,7 @@ fn shown(name: &str, opened: u64) -> Shown {
 }
 
 /// The newest state that satisfies `until`.
-fn wait(solver: &mut Solver, until: impl Fn(&Shown) -> bool) -> Shown {
+fn wait(solver: &mut Solver, until: impl Fn(&SolverState) -> bool) -> SolverState {
     let start = Instant::now();
     loop {
         if let Some(shown) = solver.newest().filter(&until) {
@@ -69,7 +69,7 @@ fn harness(scene: &str) -> Harness<'static, AppState> {
     harness_of(shown(scene, 1))
 }
 
-fn harness_of(shown: Shown) -> Harness<'static, AppState> {
+fn harness_of(shown: SolverState) -> Harness<'static, AppState> {
     let scene = shown.info.as_ref().unwrap().card.name.clone();
     let mut state = AppState::new(
         support::TestScenes.list(),

@@ -91,8 +91,8 @@ fn in_3d_a_drag_orbits_and_the_hand_takes_hold_of_the_nearest_water() {
     let camera = state.camera.clone().unwrap();
     let middle = [0.5, 0.5, 0.5];
     let at = camera.project(middle, state.aspect).unwrap();
-    state.hold(0, at, PointerMode::Attract, [0.0; 2]);
-    let (position, _) = state.held.unwrap();
+    state.press_pointer(0, at, PointerMode::Attract, [0.0; 2]);
+    let (position, _) = state.pressed.unwrap();
     let nearer: f64 = (0..3)
         .map(|i| (position[i] - middle[i]) * camera.axes()[2][i])
         .sum();

@@ -72,7 +72,7 @@ fn solver(folder: &std::path::Path, paused: bool) -> Solver {
     solver
 }
 
-fn position(shown: &Shown) -> f64 {
+fn position(shown: &SolverState) -> f64 {
     let position = shown.sides[0].snapshot.get(Field::Position);
     position.unwrap().to_f64()[0]
 }
