@@ -15,3 +15,8 @@ mod parallel;
 pub mod particle_list;
 pub mod ply;
 pub mod scene;
+
+/// The Rust block of this crate's README, compiled and run by the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+mod readme {}

@@ -42,3 +42,9 @@ pub use simulation::Simulation;
 pub use state::checkpoint::{self, Checkpoint, CheckpointError};
 pub use state::diagnostics::{self, Diagnostics};
 pub use state::retry::{Retry, frame};
+
+/// The Rust blocks of the README of the repository and of this crate, compiled and run by the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/README.md")]
+#[doc = include_str!("../README.md")]
+mod readme {}

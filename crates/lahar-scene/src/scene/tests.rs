@@ -5,7 +5,7 @@ use super::document::{Document, Node, Table, Value};
 use super::keys::{Kind, SCENE, SECTIONS, Section, model_section};
 use super::*;
 
-const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scene-format.md");
+const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/scene-format.md");
 
 /// Code blocks of a page, by their language.
 fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {

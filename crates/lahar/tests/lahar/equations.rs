@@ -4,9 +4,16 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The root of the repository.
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+/// The folder of this crate.
+const CRATE: &str = env!("CARGO_MANIFEST_DIR");
+
+/// The folder whose code is checked: all crates in the repository, and this crate alone in a published package.
+fn code() -> PathBuf {
+    let crates = Path::new(CRATE).join("..");
+    match crates.join("lahar/Cargo.toml").is_file() {
+        true => crates,
+        false => CRATE.into(),
+    }
 }
 
 /// All numbers in brackets, such as `7` and `7g` in "(7), (7g)". Years have too many digits to count.
@@ -58,7 +65,7 @@ fn rust_files(folder: &Path, found: &mut Vec<PathBuf>) {
 
 #[test]
 fn equation_numbers_are_unique_and_those_in_comments_exist() {
-    let page = fs::read_to_string(root().join("docs/equations.md")).expect("the page");
+    let page = fs::read_to_string(Path::new(CRATE).join("docs/equations.md")).expect("the page");
     let mut known = BTreeSet::new();
     for number in defined(&page) {
         assert!(known.insert(number), "two equations are ({number})");
@@ -67,7 +74,7 @@ fn equation_numbers_are_unique_and_those_in_comments_exist() {
     assert!(substep.iter().all(|number| known.contains(number)));
 
     let mut files = Vec::new();
-    rust_files(&root().join("crates"), &mut files);
+    rust_files(&code(), &mut files);
     let mut citations = 0;
     for file in files {
         let code = fs::read_to_string(&file).expect("a source file");

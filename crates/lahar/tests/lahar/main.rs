@@ -16,5 +16,6 @@ mod method;
 mod pointer;
 mod probes;
 mod retry;
+mod tutorial;
 mod walled;
 mod walls;
