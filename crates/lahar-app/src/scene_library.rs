@@ -6,10 +6,10 @@
 use std::path::Path;
 
 use lahar::{Field, Isa};
-use lahar_io::driver::Driver;
 use lahar_io::image::{Picture, Renderer, Scenery, Style, body_color};
 use lahar_io::output::Recording;
 use lahar_scene::builtin;
+use lahar_scene::driver::Driver;
 use lahar_scene::scene::{Controls, Scene, colliders_of};
 use serde_json::Value;
 

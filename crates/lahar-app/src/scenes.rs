@@ -1,8 +1,8 @@
 //! Where scenes come from: the window knows them by name and gets a simulation that is ready to run.
 
-use lahar_io::driver::Driver;
 use lahar_io::image::Picture;
 use lahar_io::output::Recording;
+use lahar_scene::driver::Driver;
 use lahar_scene::scene::{ColliderInfo, Controls};
 
 use crate::color::ColorBy;

@@ -2,8 +2,8 @@
 
 use lahar::{DtLimit, Failure, Field, Retry};
 use lahar_io::checkpoint::{self, Header, Start};
-use lahar_io::driver::{Driver, Event, Frame};
 use lahar_io::output::{OutputError, PhaseSeconds, Writer};
+use lahar_scene::driver::{Driver, Event, Frame};
 
 use crate::plan::Plan;
 use crate::progress::{Progress, Standing};

@@ -7,9 +7,9 @@ use std::process::ExitCode;
 
 use lahar::{Checkpoint, Retry, Simulate};
 use lahar_io::checkpoint::{self, Header, Start, Store};
-use lahar_io::driver::Driver;
 use lahar_io::image::Scenery;
 use lahar_io::output::{self, OutputCounts, PhaseSeconds, Record, RunFolder, Status, Writer};
+use lahar_scene::driver::Driver;
 
 use crate::error::{CliError, INTERRUPTED};
 use crate::frame_loop::{FrameLoop, RunError};

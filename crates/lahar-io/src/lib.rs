@@ -1,7 +1,6 @@
 //! Everything between the lahar simulator and the disk: run folders, checkpoints, exports, pictures and films.
 
 pub mod checkpoint;
-pub mod driver;
 pub mod export;
 pub mod files;
 #[doc(hidden)]

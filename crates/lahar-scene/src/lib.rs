@@ -3,6 +3,7 @@
 #[cfg(feature = "npz")]
 mod after_error;
 pub mod builtin;
+pub mod driver;
 pub mod error;
 mod even;
 mod expression;

@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use lahar::{Command, Field, Retry};
-use lahar_io::driver::{Driver, Event, FrameEnd};
+use lahar_scene::driver::{Driver, Event, FrameEnd};
 
 use super::clock::Throughput;
 use super::{Readouts, Side, panic_report};
@@ -188,7 +188,7 @@ mod tests {
     use super::*;
     use lahar::material::{Corotated, lame};
     use lahar::{Material, Model, ParticleBatch, Setup, Simulate, Simulation, TimeStep};
-    use lahar_io::driver::Schedule;
+    use lahar_scene::driver::Schedule;
 
     const FRAME_END: FrameEnd = FrameEnd::Rate(1.0);
 

@@ -5,7 +5,7 @@ use lahar::Field;
 use lahar_app::scene_library::SceneLibrary;
 use lahar_app::scenes::{SceneContent, Setting};
 use lahar_app::solver::Condition;
-use lahar_io::driver::Driver;
+use lahar_scene::driver::Driver;
 
 /// A scene, to be run without a window.
 fn driver(source: &dyn SceneSource, scene: &str) -> Driver {

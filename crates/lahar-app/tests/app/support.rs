@@ -9,7 +9,7 @@ use lahar_app::scenes::{
     Angle, Changes, MaterialKind, OpenedScene, SceneCard, SceneContent, SceneInfo, SceneSource,
     Setting, SettingValue, Swatch,
 };
-use lahar_io::driver::{Driver, FrameEnd, Schedule};
+use lahar_scene::driver::{Driver, FrameEnd, Schedule};
 use lahar_scene::scene::Controls;
 
 /// Two blocks of water in 2D, one in 3D, and a scene that cannot be opened.

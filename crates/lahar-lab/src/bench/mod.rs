@@ -12,7 +12,7 @@ mod machine;
 mod table;
 
 use lahar::{Isa, PhaseTimes};
-use lahar_io::driver::{Driver, Event, FrameEnd, Schedule};
+use lahar_scene::driver::{Driver, Event, FrameEnd, Schedule};
 use serde::{Deserialize, Serialize};
 
 use lahar_scene::error::SceneError;

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use lahar::{Data, Diagnostics, Failure, Field, ProbeSamples, Retry, Simulate};
-use lahar_io::driver::{Driver, Event};
+use lahar_scene::driver::{Driver, Event};
 
 use super::{Case, Finding, Options, Outcome};
 use crate::plot::{Line, Plot};

@@ -13,7 +13,7 @@
 //! a bit of the run. It needs no thread, clock or file of its own, so it also serves a page in a browser.
 //!
 //! ```
-//! use lahar_io::driver::{Driver, Event};
+//! use lahar_scene::driver::{Driver, Event};
 //! use lahar_scene::scene::Scene;
 //!
 //! let scene = Scene::load("dam-break", &[("dx".into(), "0.1".into())])?;
@@ -33,7 +33,7 @@
 
 use lahar::{Advance, Checkpoint, Command, Failure, ProbeSamples, Retry, Simulate};
 
-use lahar_scene::scene::{Scene, SoundSpeeds};
+use crate::scene::{Scene, SoundSpeeds};
 
 /// Where a frame ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
