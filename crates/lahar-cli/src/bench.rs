@@ -10,8 +10,8 @@ use lahar_lab::bench::{self, BenchError, BenchReport, Case, Machine, Options};
 use serde_json::json;
 
 use crate::error::CliError;
-use crate::progress::with_prefix;
 use crate::{args, terminal};
+use lahar_lab::numbers::with_prefix;
 
 /// Measures the cases that are asked for.
 pub(crate) fn bench(args: &args::Bench) -> Result<ExitCode, CliError> {

@@ -15,11 +15,12 @@ use std::process::ExitCode;
 use lahar_io::files::make_folder;
 use lahar_io::image::{Film, Picture, side_by_side};
 use lahar_io::output::{RunFolder, film_pace};
+use lahar_lab::run_plots::save_plots;
 use lahar_scene::scene::{Comparison, Scene};
 
 use crate::error::CliError;
 use crate::plan::Plan;
-use crate::{args, plot, run, terminal};
+use crate::{args, run, terminal};
 
 /// How wide each of the pictures is, unless the scene is told otherwise \[pixels\].
 const WIDTH: u32 = 420;
@@ -68,7 +69,7 @@ pub(crate) fn compare(args: &args::Run, comparison: &Comparison) -> Result<ExitC
         folder.join("video.gif").display(),
         folder.join("images").display(),
     ));
-    for file in plot::draw(&runs, &folder.join("plots"))? {
+    for file in save_plots(&runs, &folder.join("plots"))? {
         terminal::print(&format!("  {}\n", file.display()));
     }
     Ok(ExitCode::SUCCESS)

@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 
 use crate::args;
 use crate::error::CliError;
-use crate::progress::with_prefix;
 use crate::terminal;
+use lahar_lab::numbers::with_prefix;
 
 pub(crate) fn show(args: &args::Show) -> Result<ExitCode, CliError> {
     if args.toml {

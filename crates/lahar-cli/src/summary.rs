@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 
 use crate::error::CliError;
 use crate::plan::Plan;
-use crate::progress::{duration, with_prefix};
 use crate::{show, terminal};
+use lahar_lab::numbers::{duration, with_prefix};
 
 /// Why the frames ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

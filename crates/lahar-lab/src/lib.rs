@@ -5,5 +5,8 @@
 //! - [`plot`] draws curves as SVG.
 
 pub mod bench;
+pub mod numbers;
 pub mod plot;
+pub mod run_page;
+pub mod run_plots;
 pub mod validate;
