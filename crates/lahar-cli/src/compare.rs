@@ -19,7 +19,7 @@ use lahar_lab::run_plots::save_plots;
 use lahar_scene::scene::{Comparison, Scene};
 
 use crate::error::CliError;
-use crate::plan::Plan;
+use crate::run_plan::RunPlan;
 use crate::{args, run, terminal};
 
 /// How wide each of the pictures is, unless the scene is told otherwise \[pixels\].
@@ -38,7 +38,7 @@ pub(crate) fn compare(args: &args::Run, comparison: &Comparison) -> Result<ExitC
     for set in comparison.overrides(&base) {
         let mut args = args.clone();
         args.scene.set = set;
-        plans.push(Plan::from_args(&args)?);
+        plans.push(RunPlan::from_args(&args)?);
     }
     let folder = match &args.output {
         Some(path) => RunFolder::for_comparison(path, args.overwrite)?,

@@ -5,8 +5,8 @@ use lahar_io::checkpoint::{self, Header, Start};
 use lahar_io::output::{OutputError, PhaseSeconds, Writer};
 use lahar_scene::driver::{Driver, Event, Frame};
 
-use crate::plan::Plan;
 use crate::progress::{Progress, Standing};
+use crate::run_plan::RunPlan;
 use crate::summary::End;
 use crate::{clock, interrupt};
 
@@ -27,7 +27,7 @@ const FIXED_DT_ADVICE: &str = "; the scene fixes dt, and a shorter one would avo
 
 /// The loop over the frames of a run.
 pub(crate) struct FrameLoop<'a> {
-    plan: &'a Plan,
+    plan: &'a RunPlan,
     start: &'a Start,
     driver: &'a mut Driver,
     writer: Writer,
@@ -44,7 +44,7 @@ pub(crate) struct FrameLoop<'a> {
 impl<'a> FrameLoop<'a> {
     /// Continues after the frame that `resumed` names, or begins with frame 0.
     pub(crate) fn new(
-        plan: &'a Plan,
+        plan: &'a RunPlan,
         start: &'a Start,
         driver: &'a mut Driver,
         writer: Writer,

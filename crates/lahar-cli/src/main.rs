@@ -18,15 +18,15 @@ mod list;
 #[cfg(feature = "mesh")]
 mod mesh;
 mod new;
-mod page;
 mod painter;
-mod plan;
 mod plot;
 mod progress;
 mod recorded_frames;
 mod render;
+mod report;
 mod resume;
 mod run;
+mod run_plan;
 mod schema;
 mod show;
 mod summary;
@@ -70,7 +70,7 @@ fn execute(args: Args) -> Result<ExitCode, CliError> {
         Some(Command::View(view)) => window::open(view),
         Some(Command::Run(run)) => match &run.compare {
             Some(comparison) => compare::compare(&run, comparison),
-            None => run::run(plan::Plan::from_args(&run)?, run.json),
+            None => run::run(run_plan::RunPlan::from_args(&run)?, run.json),
         },
         Some(Command::Resume(args)) => resume::resume(&args),
         Some(Command::List(list)) => list::list(list.json),
@@ -79,7 +79,7 @@ fn execute(args: Args) -> Result<ExitCode, CliError> {
         #[cfg(feature = "mesh")]
         Some(Command::Mesh(args)) => mesh::mesh(&args),
         Some(Command::Render(args)) => render::render(&args),
-        Some(Command::Report(args)) => page::report(&args),
+        Some(Command::Report(args)) => report::report(&args),
         Some(Command::Plot(plot)) => plot::plot(&plot),
         Some(Command::Bench(args)) => bench::bench(&args),
         Some(Command::Validate(args)) => validate::validate(&args),

@@ -11,8 +11,8 @@ use serde_json::json;
 
 use crate::args;
 use crate::error::CliError;
-use crate::plan::Plan;
 use crate::run::{self, Origin};
+use crate::run_plan::RunPlan;
 use crate::terminal;
 
 /// Resumes the run in `args.folder`.
@@ -47,7 +47,7 @@ pub(crate) fn resume(args: &args::Resume) -> Result<ExitCode, CliError> {
         return Ok(ExitCode::SUCCESS);
     }
     start.frames = last_frame;
-    let plan = Plan::of_start(&start, scene, args.threads, args.isa)?;
+    let plan = RunPlan::of_start(&start, scene, args.threads, args.isa)?;
     let checkpoint = checkpoint(args, &folder, &start, &plan, finished.is_some())?;
     if is_extended {
         start.rewrite(&checkpoints)?;
@@ -101,7 +101,7 @@ fn checkpoint(
     args: &args::Resume,
     folder: &RunFolder,
     start: &Start,
-    plan: &Plan,
+    plan: &RunPlan,
     is_finished: bool,
 ) -> Result<Option<(Header, Checkpoint)>, CliError> {
     let sum = start.sum();

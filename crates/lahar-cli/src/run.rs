@@ -13,7 +13,7 @@ use lahar_scene::driver::Driver;
 
 use crate::error::{CliError, INTERRUPTED};
 use crate::frame_loop::{FrameLoop, RunError};
-use crate::plan::Plan;
+use crate::run_plan::RunPlan;
 use crate::summary::{self, End};
 use crate::{clock, interrupt, terminal};
 
@@ -28,7 +28,7 @@ pub(crate) struct Origin {
 }
 
 /// Runs `plan`, or describes it if it is a dry run. The report is one JSON document if `as_json`.
-pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
+pub(crate) fn run(plan: RunPlan, as_json: bool) -> Result<ExitCode, CliError> {
     if plan.dry_run {
         return summary::dry_run(&plan, as_json);
     }
@@ -37,7 +37,7 @@ pub(crate) fn run(plan: Plan, as_json: bool) -> Result<ExitCode, CliError> {
 
 /// Runs `plan` from its beginning, or continues the run in `origin`.
 pub(crate) fn begin(
-    plan: Plan,
+    plan: RunPlan,
     origin: Option<Origin>,
     as_json: bool,
 ) -> Result<ExitCode, CliError> {
@@ -101,14 +101,14 @@ fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, CliError> {
 }
 
 /// The parts of the scene that pictures show beside its particles.
-fn scenery(plan: &Plan, simulation: &dyn Simulate) -> Scenery {
+fn scenery(plan: &RunPlan, simulation: &dyn Simulate) -> Scenery {
     let materials = plan.scene.materials.iter();
     let models: Vec<&str> = materials.map(|material| material.model.as_str()).collect();
     Scenery::of(simulation, &models).with_colliders(&plan.scene.colliders)
 }
 
 /// Makes the folder of a new run, with its `start.json`, and prints the scene's warnings.
-fn new_run(plan: &Plan, warnings: &[String]) -> Result<Origin, CliError> {
+fn new_run(plan: &RunPlan, warnings: &[String]) -> Result<Origin, CliError> {
     for warning in warnings {
         terminal::note(&format!("warning: {warning}"));
     }
@@ -124,7 +124,7 @@ fn new_run(plan: &Plan, warnings: &[String]) -> Result<Origin, CliError> {
 
 /// Starts the thread that writes the run's files.
 fn writer(
-    plan: &Plan,
+    plan: &RunPlan,
     folder: &RunFolder,
     scenery: &Scenery,
     driver: &Driver,
@@ -141,7 +141,7 @@ fn writer(
 }
 
 /// The record of a run whose first frame is not written yet.
-fn first_record(plan: &Plan, simulation: &dyn Simulate, warnings: Vec<String>) -> Record {
+fn first_record(plan: &RunPlan, simulation: &dyn Simulate, warnings: Vec<String>) -> Record {
     Record {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         status: Status::Running,

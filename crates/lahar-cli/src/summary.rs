@@ -7,7 +7,7 @@ use lahar_io::output::{OutputCounts, Record, RunFolder};
 use serde_json::{Value, json};
 
 use crate::error::CliError;
-use crate::plan::Plan;
+use crate::run_plan::RunPlan;
 use crate::{show, terminal};
 use lahar_lab::numbers::{duration, with_prefix};
 
@@ -24,7 +24,7 @@ pub(crate) enum End {
 
 /// What is about to be run.
 pub(crate) fn announcement(
-    plan: &Plan,
+    plan: &RunPlan,
     record: &Record,
     folder: &RunFolder,
     from: Option<&Progress>,
@@ -46,7 +46,7 @@ pub(crate) fn announcement(
 
 /// What a run has come to.
 pub(crate) fn print(
-    plan: &Plan,
+    plan: &RunPlan,
     record: &Record,
     folder: &RunFolder,
     end: End,
@@ -124,7 +124,7 @@ pub(crate) fn print(
 }
 
 /// What would be done.
-pub(crate) fn dry_run(plan: &Plan, as_json: bool) -> Result<ExitCode, CliError> {
+pub(crate) fn dry_run(plan: &RunPlan, as_json: bool) -> Result<ExitCode, CliError> {
     let mut value = show::describe(&plan.scene, plan.isa)?;
     let folder = match &plan.folder {
         Some(path) => path.display().to_string(),

@@ -9,7 +9,7 @@ use lahar_scene::scene::{Comparison, Scene};
 
 use crate::args::View;
 use crate::error::CliError;
-use crate::plan::Plan;
+use crate::run_plan::RunPlan;
 use crate::{run, terminal};
 
 /// The scene that opens first.
@@ -26,7 +26,7 @@ pub(crate) fn open_or_run() -> Result<ExitCode, CliError> {
             terminal::note(&format!(
                 "no window ({why}): running the scene \"{DEFAULT_SCENE}\" without one, in under a minute, into out/"
             ));
-            run::run(Plan::demonstration(DEFAULT_SCENE, DEADLINE)?, false)
+            run::run(RunPlan::demonstration(DEFAULT_SCENE, DEADLINE)?, false)
         }
     }
 }

@@ -16,7 +16,7 @@ use crate::args;
 use crate::error::CliError;
 
 /// A run, checked.
-pub(crate) struct Plan {
+pub(crate) struct RunPlan {
     /// What is run.
     pub(crate) scene: Scene,
     /// With which instructions.
@@ -102,7 +102,7 @@ fn all_threads() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-impl Plan {
+impl RunPlan {
     /// Of `lahar run`.
     pub(crate) fn from_args(args: &args::Run) -> Result<Self, CliError> {
         let scene = Scene::load(&args.scene.scene, &args.scene.set)?;
