@@ -3,7 +3,7 @@
 
 use criterion::{Criterion, Throughput};
 use fearless_simd::{Level, Simd, dispatch};
-use lahar::material::{ConstitutiveModel, Corotated, Dust, NeoHookean, Snow, Strain, lame};
+use lahar::material::{ConstitutiveModel, Corotated, Dust, NeoHookean, Snow, Variables, lame};
 use lahar::math::{Lanes, Matrix, Real, polar, svd};
 use lahar::{Model, material};
 use std::hint::black_box;

@@ -1,5 +1,39 @@
 //! Arrays of numbers of any type, as snapshots and checkpoints hand them out.
 
+use crate::math::Scalar;
+
+/// A scalar that [`Data`] and [`Values`] can hold arrays of.
+pub trait Element: Scalar {
+    /// Wraps the numbers of a snapshot's field.
+    fn data(values: Vec<Self>) -> Data;
+    /// Wraps the numbers of a checkpoint's array.
+    fn values(values: Vec<Self>) -> Values;
+    /// Returns the numbers of a checkpoint's array, or `None` if they are of another type.
+    fn from_values(values: Values) -> Option<Vec<Self>>;
+}
+
+macro_rules! element {
+    ($scalar:ty, $variant:ident) => {
+        impl Element for $scalar {
+            fn data(values: Vec<Self>) -> Data {
+                Data::$variant(values)
+            }
+            fn values(values: Vec<Self>) -> Values {
+                Values::$variant(values)
+            }
+            fn from_values(values: Values) -> Option<Vec<Self>> {
+                match values {
+                    Values::$variant(values) => Some(values),
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+element!(f32, F32);
+element!(f64, F64);
+
 /// The numbers of one field, particle after particle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Data {

@@ -29,7 +29,7 @@ use crate::boundary::walls::Walls;
 use crate::dispatch::on_level;
 use crate::forces::{self, Force};
 use crate::material::IsaToken;
-use crate::math::{Lanes, Real, Vector};
+use crate::math::{Lanes, Real, Register, Vector};
 use crate::parallel;
 use crate::particles::{Group, block_edge};
 use crate::prefetch::prefetch;

@@ -5,6 +5,7 @@
 //! reached through [`Instance`], whose four implementations are concrete and so belong to this
 //! crate alone.
 
+use crate::array::Element;
 use crate::boundary::collider::Moving;
 use crate::boundary::impulse::Taken;
 use crate::boundary::walls::Walls;
@@ -24,7 +25,7 @@ pub trait Instance<const D: usize>: Kernels<D> {}
     private_interfaces,
     reason = "sealed: outside of this crate it is only a bound"
 )]
-pub trait Kernels<const D: usize>: Lanes {
+pub trait Kernels<const D: usize>: Lanes + Element {
     /// The law of a built-in model.
     #[doc(hidden)]
     fn built_in(model: &Model) -> Box<dyn Law<Self, D>>;

@@ -35,7 +35,7 @@ pub use material::{Material, Model};
 pub use particles::{Data, Field, Snapshot};
 pub use setup::{
     Command, Deformation, ForceForm, Gauge, Isa, Kernel, ParticleBatch, Plate, Pointer,
-    PointerAction, Probe, ProbeSample, ProbeSamples, Setup, TimeStep, Transfer,
+    PointerAction, Probe, ProbeSample, ProbeSamples, Setup, StartingValues, TimeStep, Transfer,
 };
 pub use simulate::{Advance, Memory, PhaseTimes, Simulate};
 pub use simulation::Simulation;

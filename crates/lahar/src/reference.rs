@@ -26,7 +26,10 @@ use crate::forces;
 use crate::grid::{NodePointer, OUTSIDE};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
 use crate::material::rheology::shear_rate;
-use crate::material::{ConstitutiveModel, Model, Strain, VolumeCorrection, VolumeRule, for_model};
+use crate::material::{
+    ConstitutiveModel, FluidModel, Model, Strain, Variables, VolumeCorrection, VolumeRule,
+    for_model, start,
+};
 use crate::math::{Matrix, Vector};
 use crate::setup::Pointer;
 use crate::setup::{Deformation, ForceForm, Kernel, ParticleBatch, Setup, Transfer};
@@ -881,7 +884,7 @@ fn outer<const D: usize>(a: Vector<f64, D>, b: Vector<f64, D>) -> Matrix<f64, D>
 
 /// A [`ConstitutiveModel`] in one `f64` a number, whatever it keeps as strain being columns.
 trait Law<const D: usize> {
-    fn strain_of(&self, displacement_gradient: Matrix<f64, D>, plastic: f64) -> Vec<f64>;
+    fn start(&self, displacement_gradient: Matrix<f64, D>, given: &[(&str, &[f64])]) -> Vec<f64>;
     fn displacement_gradient(&self, strain: &[f64]) -> Matrix<f64, D>;
     fn jacobian_minus_one(&self, strain: &[f64]) -> f64;
     fn plastic_jacobian(&self, strain: &[f64]) -> f64;
@@ -897,9 +900,8 @@ fn law<const D: usize>(model: &Model) -> &dyn Law<D> {
 }
 
 impl<M: ConstitutiveModel<D>, const D: usize> Law<D> for M {
-    fn strain_of(&self, displacement_gradient: Matrix<f64, D>, plastic: f64) -> Vec<f64> {
-        let strain = M::Strain::from_displacement_gradient(displacement_gradient);
-        columns(strain.with_plastic_jacobian_minus_one(plastic))
+    fn start(&self, displacement_gradient: Matrix<f64, D>, given: &[(&str, &[f64])]) -> Vec<f64> {
+        start::<M, D>(displacement_gradient, given)
     }
     fn displacement_gradient(&self, strain: &[f64]) -> Matrix<f64, D> {
         M::Strain::read(|column| strain[column]).displacement_gradient()
@@ -924,10 +926,7 @@ impl<M: ConstitutiveModel<D>, const D: usize> Law<D> for M {
     }
 
     fn volume_rule(&self) -> VolumeRule {
-        match M::Strain::<f64>::JACOBIAN_COLUMN {
-            Some(_) => ConstitutiveModel::<D>::volume_rule(self),
-            None => VolumeRule::Jacobian,
-        }
+        ConstitutiveModel::<D>::fluid(self).map_or(VolumeRule::Jacobian, FluidModel::volume_rule)
     }
 }
 
@@ -960,7 +959,7 @@ fn take_in<const D: usize>(
     one_each("batch.volume", batch.volume.len(), &[1])?;
     one_each("batch.mass", batch.mass.len(), &[0, 1])?;
     one_each("batch.affine", batch.affine.len(), &[0])?;
-    one_each("batch.plastic_jacobian", batch.plastic_jacobian.len(), &[0])?;
+    batch.check_variables(material.model.variables())?;
     match &batch.deformation {
         Deformation::Rest => {}
         Deformation::Jacobian(j) => one_each("batch.deformation", j.len(), &[])?,
@@ -1003,7 +1002,7 @@ fn take_in<const D: usize>(
             position: Vector(position),
             velocity: Vector(velocity.copied().unwrap_or([0.0; D])),
             affine: Matrix::from_fn(|row, column| affine.map_or(0.0, |c| c[row][column])),
-            strain: law.strain_of(h, batch.plastic_jacobian.get(i).map_or(0.0, |j| j - 1.0)),
+            strain: law.start(h, &batch.variables_of(i)),
         });
     }
     Ok(())

@@ -212,6 +212,7 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
     fn append(&mut self, batch: &ParticleBatch<D>) -> Result<(), SetupError> {
         let count = batch.position.len();
         check_batch(batch, &self.setup, self.next_id)?;
+        batch.check_variables(self.groups[batch.material].law.variables())?;
         let offset = self.scheme.offset();
         self.move_colliders(0.0);
         let (hold, origin, dx) = (self.walls.hold, self.origin, self.setup.dx);
@@ -294,14 +295,14 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
                     head[Layout::affine(D) + axis * D + row].push(T::from_f64(c));
                 }
             }
-            let plastic_jacobian = batch.plastic_jacobian.get(i).copied();
+            let variables = batch.variables_of(i);
             let identity = || core::array::from_fn(|a| core::array::from_fn(|b| f64::from(a == b)));
-            match gradient.or_else(|| plastic_jacobian.map(|_| identity())) {
+            match gradient.or_else(|| (!variables.is_empty()).then(identity)) {
                 None => strain
                     .iter_mut()
                     .for_each(|column| column.push(T::default())),
                 Some(f) => {
-                    let start = group.law.start(f, plastic_jacobian.unwrap_or(1.0));
+                    let start = group.law.start(f, &variables);
                     strain
                         .iter_mut()
                         .zip(start)
@@ -809,12 +810,6 @@ fn check_batch<const D: usize>(
         ("volume", batch.volume.len(), false, true),
         ("mass", batch.mass.len(), true, true),
         ("affine", batch.affine.len(), true, false),
-        (
-            "plastic_jacobian",
-            batch.plastic_jacobian.len(),
-            true,
-            false,
-        ),
     ];
     for (key, len, may_be_empty, may_be_one) in lengths {
         if len != count && !(len == 0 && may_be_empty) && !(len == 1 && may_be_one) && count > 0 {
@@ -835,7 +830,6 @@ fn check_batch<const D: usize>(
     let positive = [
         ("volume", &batch.volume),
         ("mass", &batch.mass),
-        ("plastic_jacobian", &batch.plastic_jacobian),
     ];
     for (key, values) in positive {
         if let Some(i) = values.iter().position(|&x| !(x > 0.0 && x.is_finite())) {

@@ -443,7 +443,7 @@ impl Scene {
         let written = |info: &&FieldInfo| match &self.output.fields {
             Some(names) => names.iter().any(|name| name == info.name),
             None => (self.simulated_materials().iter())
-                .any(|material| material.model.informs(info.field)),
+                .any(|material| info.field.is_stored_by(&material.model)),
         };
         FIELDS
             .iter()

@@ -155,7 +155,9 @@ fn part_of<const D: usize>(batch: &ParticleBatch<D>, range: Range<usize>) -> Par
             Deformation::Jacobian(j) => Deformation::Jacobian(j[range.clone()].to_vec()),
             Deformation::Gradient(f) => Deformation::Gradient(f[range.clone()].to_vec()),
         },
-        plastic_jacobian: some(&batch.plastic_jacobian, range, count),
+        variables: (batch.variables.iter())
+            .map(|given| given.part(range.clone(), count))
+            .collect(),
     }
 }
 

@@ -115,9 +115,8 @@ mod tests {
             .copied()
             .filter(|name| *name != "dust")
             .collect();
-        let simulators: Vec<&str> = lahar::material::PRESETS
-            .iter()
-            .map(|(name, _)| *name)
+        let simulators: Vec<&str> = lahar::material::Preset::all()
+            .map(|preset| preset.name)
             .collect();
         assert_eq!(own, simulators);
         for name in own {

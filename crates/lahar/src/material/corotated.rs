@@ -1,18 +1,23 @@
 //! Fixed corotated elasticity (Stomakhin 2012): "jelly".
 //!
-//! Written so that H = F − I never meets the rounding of the 1: with V = (FFᵀ)^½ = F Rᵀ,
+//! The stress is written in terms of H = F − I, so that small strains are not lost in the rounding
+//! of the 1. With V = (FFᵀ)^½ = F Rᵀ,
 //!
 //!   2(F−R)Fᵀ = 2(V² − V) = (V² − I) + (V − I)² = (FFᵀ − I) + (F−R)(F−R)ᵀ.
 //!
-//! The first term comes from H alone. The second is of second order in the strain, so that the
-//! rounding of R costs nothing.
+//! The first term needs H alone. The second is of second order in the strain, so that the rounding
+//! of R does no harm.
 
-use super::{ConstitutiveModel, DisplacementGradient, lame, largest_squared_stretch, left_strain};
+use super::{
+    ConstitutiveModel, DisplacementGradient, Model, Preset, lame, largest_squared_stretch,
+    left_strain,
+};
 use crate::math::{Matrix, Real, polar};
 
 /// τ = 2μ(F−R)Fᵀ + λ(J−1)J I; Φ = μ|F−R|² + ½λ(J−1)².
 ///
-/// Defined for every F, also turned inside out (R is then the nearest rotation, which mends it).
+/// The law is defined for every F. A particle that is turned inside out is pushed back: R is then
+/// still the nearest rotation.
 /// Speed of pressure waves at rest: √((λ+2μ)/ρ₀).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corotated {
@@ -22,14 +27,23 @@ pub struct Corotated {
     pub mu: f64,
 }
 
+/// The preset of a soft solid.
+pub(super) const PRESETS: &[Preset] = &[Preset {
+    name: "jelly",
+    about: "Gelatin, one part to twenty of water: E = 4.3 kPa (J. E. Bonavia et al., arXiv:2512.20502); \
+            ν = 0.45 rather than nearly ½, and 1010 kg/m³, are choices.",
+    density: 1010.0,
+    model: |_, _| Model::Corotated(Corotated::new(4.3e3, 0.45)),
+}];
+
 impl Corotated {
-    /// From Young's modulus \[Pa\] and Poisson's ratio, −1 < ν < ½.
+    /// Creates the law of Young's modulus \[Pa\] and Poisson's ratio, −1 < ν < ½.
     pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Self {
         let (lambda, mu) = lame(youngs_modulus, poisson_ratio);
         Self { lambda, mu }
     }
 
-    /// τ with both moduli times `hardening`.
+    /// Returns τ \[Pa\] with both moduli multiplied by `hardening`.
     #[inline(always)]
     pub(super) fn hardened_stress<R: Real, const D: usize>(
         &self,
@@ -43,7 +57,7 @@ impl Corotated {
             + Matrix::scaled_identity(volume)
     }
 
-    /// Φ \[Pa\].
+    /// Returns Φ \[Pa\].
     #[inline(always)]
     pub(super) fn stored<R: Real, const D: usize>(&self, h: Matrix<R, D>) -> R {
         let e = h.determinant_of_identity_plus_minus_one();
@@ -52,7 +66,7 @@ impl Corotated {
         twice_stretch.squared_norm() * e.lit(0.25 * self.mu) + e * e * e.lit(0.5 * self.lambda)
     }
 
-    /// 2μ|Fᵀn|² + λJ², n along the largest stretch.
+    /// Returns the wave modulus 2μ|Fᵀn|² + λJ² \[Pa\], with n along the largest stretch.
     #[inline(always)]
     pub(super) fn stiffness<R: Real, const D: usize>(&self, h: Matrix<R, D>) -> R {
         let j = h.determinant_of_identity_plus_minus_one() + h[(0, 0)].one();
@@ -60,7 +74,7 @@ impl Corotated {
     }
 }
 
-/// F − R, R the rotation nearest to F = I + H.
+/// F − R, with the rotation R nearest to F = I + H.
 #[inline(always)]
 fn from_rotation<R: Real, const D: usize>(h: Matrix<R, D>) -> Matrix<R, D> {
     let identity = Matrix::identity(h[(0, 0)]);

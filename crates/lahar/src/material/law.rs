@@ -1,31 +1,30 @@
-//! A model as the engine runs it: on columns of storage, a chunk of particles at a time, compiled
+//! A model as the engine runs it: on columns of storage, one chunk of particles at a time, compiled
 //! for the instruction set in use.
 //!
-//! This is the seam between the solver and the laws. It is dynamic (one call a chunk), so that the
-//! code is a sum of laws and transfers and not their product, and so that laws from outside the
-//! crate run as fast as ours.
+//! This is the seam between the solver and the laws. It is dynamic, with one call per chunk, so that
+//! the compiled code is the sum of laws and transfers and not their product, and so that laws from
+//! outside the crate run as fast as the built-in ones.
 
-use super::{ConstitutiveModel, Model, Strain, VolumeCorrection, VolumeRule, for_model};
+use super::variables::{Variable, Variables, columns, find};
+use super::{ConstitutiveModel, FluidModel, Model, Strain, for_model};
 use crate::dispatch::on_level;
 use crate::math::{Lanes, Matrix, Vector};
 use crate::particles::{Largest, Rows};
 use core::ops::Deref;
 use fearless_simd::{Level, Simd};
 
-/// What a law makes of the strain and velocity gradient of one particle, in f64.
+/// What follows from the strain and the velocity gradient of one particle, in f64.
 #[derive(Clone, Debug)]
 pub struct ParticleState<const D: usize> {
     /// J.
     pub jacobian: f64,
     /// F, `[i][j]`.
     pub deformation_gradient: [[f64; D]; D],
-    /// J_P.
-    pub plastic_jacobian: f64,
-    /// −tr σ/d, σ the Cauchy stress \[Pa\].
+    /// −tr σ/d, with the Cauchy stress σ \[Pa\].
     pub pressure: f64,
 }
 
-/// What one particle stores, in f64.
+/// The volume and the energy of one particle, in f64.
 #[derive(Clone, Copy, Debug)]
 pub struct ParticleEnergy {
     /// J.
@@ -34,20 +33,27 @@ pub struct ParticleEnergy {
     pub energy_density: f64,
 }
 
-/// An instruction set as laws get it.
+/// An instruction set that the machine has, for laws.
 #[derive(Clone, Copy, Debug)]
 pub struct IsaToken(pub(crate) Level);
 
-/// A law on storage. Made from a [`ConstitutiveModel`] by [`law`]; not to be implemented by hand.
-pub trait Law<T: Lanes, const D: usize>: Send + Sync {
-    /// Columns of strain a particle.
-    fn strain_columns(&self) -> usize;
-    /// The column of J − 1, for a model that gathers it from the grid before each substep.
-    fn gathered_column(&self) -> Option<usize>;
-    /// The column of J − 1 and how fast it is set right, for a model that wants that.
-    fn corrected_column(&self) -> Option<(usize, VolumeCorrection)>;
-    /// Writes J − 1 of particles `start .. start + count`, plastic flow included. Here as below, at most a
-    /// chunk; columns have a whole one.
+mod sealed {
+    /// Only [`super::Compiled`] is a law.
+    pub trait Sealed {}
+}
+
+/// A law on storage. Made from a [`ConstitutiveModel`] by [`law`]; it cannot be implemented by hand.
+///
+/// Methods on a chunk take particles `start .. start + count`, at most one chunk. The columns have a
+/// whole chunk from `start` on.
+pub trait Law<T: Lanes, const D: usize>: sealed::Sealed + Send + Sync {
+    /// Returns the internal variables, in the order of their columns.
+    fn variables(&self) -> &'static [Variable];
+    /// Returns the number of columns of the internal variables.
+    fn strain_columns(&self) -> usize {
+        columns(self.variables(), D)
+    }
+    /// Writes J − 1 of a chunk, plastic flow included.
     fn jacobian_minus_one(
         &self,
         isa: IsaToken,
@@ -56,7 +62,7 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
         count: usize,
         out: &mut Rows<T>,
     );
-    /// Writes Kirchhoff stress of particles `start .. start + count`: `out[j·D + i][p]` = τ_ij \[Pa\].
+    /// Writes the Kirchhoff stress of a chunk: `out[j·D + i][p]` = τ_ij \[Pa\].
     fn kirchhoff_stress(
         &self,
         isa: IsaToken,
@@ -66,8 +72,8 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
         count: usize,
         out: &mut [Rows<T>; 9],
     );
-    /// Advances the strain of particles `start .. start + count` by Δt ∂v/∂x, laid out as
-    /// `increment[j·D + i][p]`, and takes their wave moduli \[Pa\] into account.
+    /// Advances the strain of a chunk by Δt ∂v/∂x, laid out as `increment[j·D + i][p]`, and takes the
+    /// wave moduli \[Pa\] after it into account.
     fn advance(
         &self,
         isa: IsaToken,
@@ -77,30 +83,29 @@ pub trait Law<T: Lanes, const D: usize>: Send + Sync {
         increment: &[Rows<T>; 9],
         wave_modulus: &mut Largest<T>,
     );
-    /// The largest wave modulus \[Pa\] of `count` particles.
+    /// Returns the largest wave modulus \[Pa\] of the first `count` particles.
     fn wave_modulus(&self, strain: &[Vec<T>], count: usize) -> f64;
-    /// Viscosity for the time step \[Pa s\].
+    /// Returns the viscosity that limits the time step \[Pa s\].
     fn viscosity(&self) -> f64;
-    /// Bulk modulus at rest \[Pa\], of a law that can be made stiffer while it runs.
-    fn bulk_modulus(&self) -> Option<f64>;
-    /// The law with another bulk modulus \[Pa\].
+    /// Returns the model as a fluid, or `None` if it is not one.
+    fn fluid(&self) -> Option<&dyn FluidModel>;
+    /// Returns the same law with another bulk modulus \[Pa\], if it is a fluid's.
     fn with_bulk_modulus(&self, bulk_modulus: f64) -> Box<dyn Law<T, D>>;
-    /// Gives every particle of `strain` the pressure that it had when the bulk modulus was `before` \[Pa\].
-    fn keep_pressure(&self, before: f64, strain: &mut [Vec<T>]);
-    /// Strain columns for a particle that starts with the deformation gradient `f` and J_P.
-    fn start(&self, f: [[f64; D]; D], plastic_jacobian: f64) -> Vec<f64>;
-    /// What the columns mean.
+    /// Returns the columns of a particle that starts with the deformation gradient `f` and the `given`
+    /// values of other variables: each with its name and its entries, those of a matrix row by row.
+    fn start(&self, f: [[f64; D]; D], given: &[(&str, &[f64])]) -> Vec<f64>;
+    /// Returns the state of a particle with these columns.
     fn describe(&self, strain: &[f64], velocity_gradient: [[f64; D]; D]) -> ParticleState<D>;
-    /// What they store.
+    /// Returns the volume and the energy of a particle with these columns.
     fn energy(&self, strain: &[f64]) -> ParticleEnergy;
 }
 
-/// The law of a built-in model.
+/// Returns the law of a built-in model.
 pub(crate) fn built_in<T: Lanes, const D: usize>(model: &Model) -> Box<dyn Law<T, D>> {
     for_model!(*model, model => law(model))
 }
 
-/// The law of any model, your own included; see [`crate::Simulation::with_laws`].
+/// Returns the law of any model, your own included; see [`crate::Simulation::with_laws`].
 ///
 /// ```
 /// use lahar::material::{ConstitutiveModel, Dilatation, Dust, law};
@@ -148,16 +153,32 @@ pub fn law<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static>(
 
 struct Compiled<M>(M);
 
-impl<M> Compiled<M> {
-    fn jacobian_column<const D: usize>(&self) -> Option<usize>
-    where
-        M: ConstitutiveModel<D>,
-    {
-        <M::Strain<f64> as Strain<f64, D>>::JACOBIAN_COLUMN
+impl<M> sealed::Sealed for Compiled<M> {}
+
+/// Returns the columns of a particle that starts with F = I + `h` and the `given` values of other
+/// variables; see [`Law::start`]. Names that the model does not have are passed over.
+pub(crate) fn start<M: ConstitutiveModel<D>, const D: usize>(
+    h: Matrix<f64, D>,
+    given: &[(&str, &[f64])],
+) -> Vec<f64> {
+    let columns_of = |strain: M::Strain<f64>| {
+        let mut columns = vec![0.0; <M::Strain<f64> as Variables<f64, D>>::COLUMNS];
+        strain.write(|column, value| columns[column] = value);
+        columns
+    };
+    let mut columns = columns_of(M::Strain::from_displacement_gradient(h));
+    for (name, values) in given {
+        let Some((first, variable)) = find(M::Strain::<f64>::TABLE, name, D) else {
+            continue;
+        };
+        for (entry, value) in values.iter().enumerate() {
+            columns[first + variable.column_of(entry, D)] = value - variable.rest_of(entry, D);
+        }
     }
+    columns_of(M::Strain::read(|column| columns[column]).with_hidden_variables())
 }
 
-/// A vector of the register of particles from row `at` on, from its columns.
+/// Loads the vectors of a register of particles, from row `at` on.
 #[inline(always)]
 pub(crate) fn load_vector<S: Simd, T: Lanes, const D: usize>(
     simd: S,
@@ -171,7 +192,8 @@ pub(crate) fn load_vector<S: Simd, T: Lanes, const D: usize>(
     v
 }
 
-/// A matrix from its columns of numbers, column by column.
+/// Loads the matrices of a register of particles, from row `at` on. The columns go through the
+/// matrix column by column.
 #[inline(always)]
 pub(crate) fn load_matrix<S: Simd, T: Lanes, const D: usize>(
     simd: S,
@@ -186,20 +208,8 @@ pub(crate) fn load_matrix<S: Simd, T: Lanes, const D: usize>(
 }
 
 impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for Compiled<M> {
-    fn strain_columns(&self) -> usize {
-        <M::Strain<f64> as Strain<f64, D>>::COLUMNS
-    }
-
-    fn gathered_column(&self) -> Option<usize> {
-        self.jacobian_column()
-            .filter(|_| self.0.volume_rule() == VolumeRule::Gathered)
-    }
-
-    fn corrected_column(&self) -> Option<(usize, VolumeCorrection)> {
-        match self.0.volume_rule() {
-            VolumeRule::Corrected(rates) => Some((self.jacobian_column()?, rates)),
-            VolumeRule::Jacobian | VolumeRule::Gathered => None,
-        }
+    fn variables(&self) -> &'static [Variable] {
+        <M::Strain<f64> as Variables<f64, D>>::TABLE
     }
 
     fn jacobian_minus_one(
@@ -254,31 +264,21 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for 
         self.0.viscosity()
     }
 
-    fn bulk_modulus(&self) -> Option<f64> {
-        self.0.bulk_modulus()
+    fn fluid(&self) -> Option<&dyn FluidModel> {
+        self.0.fluid()
     }
 
     fn with_bulk_modulus(&self, bulk_modulus: f64) -> Box<dyn Law<T, D>> {
-        law(self.0.with_bulk_modulus(bulk_modulus))
-    }
-
-    fn keep_pressure(&self, before: f64, strain: &mut [Vec<T>]) {
-        let before = self.0.with_bulk_modulus(before);
-        for p in 0..strain.first().map_or(0, Vec::len) {
-            let old = M::Strain::<f64>::read(|column| strain[column][p].to_f64());
-            self.0
-                .at_same_pressure(old, &before)
-                .write(|column, value| strain[column][p] = T::from_f64(value));
+        let mut model = self.0;
+        if let Some(fluid) = model.fluid_mut() {
+            fluid.set_bulk_modulus(bulk_modulus);
         }
+        law(model)
     }
 
-    fn start(&self, f: [[f64; D]; D], plastic_jacobian: f64) -> Vec<f64> {
+    fn start(&self, f: [[f64; D]; D], given: &[(&str, &[f64])]) -> Vec<f64> {
         let h = Matrix::from_fn(|i, j| f[i][j] - if i == j { 1.0 } else { 0.0 });
-        let strain = M::Strain::<f64>::from_displacement_gradient(h)
-            .with_plastic_jacobian_minus_one(plastic_jacobian - 1.0);
-        let mut columns = vec![0.0; <M::Strain<f64> as Strain<f64, D>>::COLUMNS];
-        strain.write(|column, value| columns[column] = value);
-        columns
+        start::<M, D>(h, given)
     }
 
     fn describe(&self, strain: &[f64], velocity_gradient: [[f64; D]; D]) -> ParticleState<D> {
@@ -292,7 +292,6 @@ impl<T: Lanes, const D: usize, M: ConstitutiveModel<D> + 'static> Law<T, D> for 
             deformation_gradient: core::array::from_fn(|i| {
                 core::array::from_fn(|j| h[(i, j)] + if i == j { 1.0 } else { 0.0 })
             }),
-            plastic_jacobian: 1.0 + strain.plastic_jacobian_minus_one(),
             pressure: -tau.trace() / (D as f64 * jacobian),
         }
     }
@@ -316,7 +315,7 @@ fn stress_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     count: usize,
     out: &mut [Rows<T>; 9],
 ) {
-    let strain = &strain[..<M::Strain<f64> as Strain<f64, D>>::COLUMNS];
+    let strain = &strain[..<M::Strain<f64> as Variables<f64, D>>::COLUMNS];
     let affine = &affine[..D * D];
     let mut p = 0;
     while p < count {
@@ -340,7 +339,7 @@ fn jacobian_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     count: usize,
     out: &mut Rows<T>,
 ) {
-    let strain = &strain[..<M::Strain<f64> as Strain<f64, D>>::COLUMNS];
+    let strain = &strain[..<M::Strain<f64> as Variables<f64, D>>::COLUMNS];
     let mut p = 0;
     while p < count {
         let strain: M::Strain<T::Of<S>> =
@@ -364,7 +363,7 @@ fn advance_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
     increment: &[Rows<T>; 9],
     wave_modulus: &mut Largest<T>,
 ) {
-    let strain = &mut strain[..<M::Strain<f64> as Strain<f64, D>>::COLUMNS];
+    let strain = &mut strain[..<M::Strain<f64> as Variables<f64, D>>::COLUMNS];
     let mut p = 0;
     while p < count {
         let before = M::Strain::read(|column| T::load(simd, &strain[column][start + p..]));

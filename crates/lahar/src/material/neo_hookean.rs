@@ -1,21 +1,23 @@
-//! Neo-Hookean elasticity: rubber, and whatever is stretched far.
+//! Neo-Hookean elasticity: rubber and other solids that are stretched far.
 //!
-//! The law's ln J ends at J = 0, but a simulated particle may be pressed past it. Below
-//! [`NeoHookean::logarithm_ends`] ln J is continued by its tangent, in the energy; stress follows, and is
-//! defined for every F. What is turned inside out is pushed back.
+//! ln J is defined for J > 0 only, but a simulated particle may be pressed past J = 0. Below
+//! [`NeoHookean::logarithm_ends`] the energy continues ln J by its tangent, and the stress follows from
+//! the energy. The law is thus defined for every F, and pushes back a particle that is turned inside
+//! out.
 
 use super::{
-    ConstitutiveModel, DisplacementGradient, Strain, lame, largest_squared_stretch, left_strain,
+    ConstitutiveModel, DisplacementGradient, Model, Preset, Strain, lame, largest_squared_stretch,
+    left_strain,
 };
 use crate::math::near_one::{ln_1p, minus_ln_1p};
 use crate::math::{Matrix, Real};
 
-/// The J below which ln J goes on as a straight line, unless told otherwise.
+/// The default of [`NeoHookean::logarithm_ends`].
 pub const LOGARITHM_ENDS: f64 = 0.1;
 
 /// τ = μ(FFᵀ−I) + λ ln J I; Φ = ½μ(|F|²−d) − μ ln J + ½λ ln²J (MPM course 2016).
 ///
-/// For J < a = `logarithm_ends`, ln J stands for ln a + (J−a)/a in Φ, and τ = (∂Φ/∂F) Fᵀ of it.
+/// For J < a = `logarithm_ends`, Φ has ln a + (J−a)/a in place of ln J, and τ = (∂Φ/∂F) Fᵀ.
 /// Speed of pressure waves at rest: √((λ+2μ)/ρ₀).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeoHookean {
@@ -23,18 +25,27 @@ pub struct NeoHookean {
     pub lambda: f64,
     /// Shear modulus μ \[Pa\].
     pub mu: f64,
-    /// a, the J below which ln J goes on as a straight line; above 0.
+    /// a, the J below which ln J continues as a straight line; above 0.
     pub logarithm_ends: f64,
 }
 
+/// The preset of a tough solid.
+pub(super) const PRESETS: &[Preset] = &[Preset {
+    name: "rubber",
+    about: "Vulcanized natural rubber: 930 kg/m³, E = 2 MPa (M. F. Ashby, Materials Selection in \
+            Mechanical Design, 1.5 to 2.5 MPa); ν = 0.49 rather than 0.4999 keeps the time step bearable.",
+    density: 930.0,
+    model: |_, _| Model::NeoHookean(NeoHookean::new(2e6, 0.49)),
+}];
+
 impl NeoHookean {
-    /// From Young's modulus \[Pa\] and Poisson's ratio, −1 < ν < ½.
+    /// Creates the law of Young's modulus \[Pa\] and Poisson's ratio, −1 < ν < ½.
     pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Self {
         let (lambda, mu) = lame(youngs_modulus, poisson_ratio);
         Self::from_lame(lambda, mu)
     }
 
-    /// From Lamé's first parameter λ and the shear modulus μ \[Pa\].
+    /// Creates the law of Lamé's first parameter λ and the shear modulus μ \[Pa\].
     pub fn from_lame(lambda: f64, mu: f64) -> Self {
         Self {
             lambda,
@@ -43,7 +54,7 @@ impl NeoHookean {
         }
     }
 
-    /// What is left of J − 1 above the end of the logarithm, and (J−a)/a below it, else 0.
+    /// Splits J − 1 in two: the part down to a − 1, and (J−a)/a below a, 0 above.
     #[inline(always)]
     fn split<R: Real>(&self, jacobian_minus_one: R) -> (R, R) {
         let e = jacobian_minus_one;
@@ -84,8 +95,8 @@ impl<const D: usize> ConstitutiveModel<D> for NeoHookean {
         let (e, beyond) = self.split(strain.jacobian_minus_one());
         let ln_j = ln_1p(e) + beyond;
         let half = e.lit(0.5);
-        // ½(|F|² − d) − ln J = tr H + ½|H|² − ln J, without its terms of first order: tr H is
-        // J − 1 less the other invariants of H, and tr² less twice the second is tr H².
+        // ½(|F|² − d) − ln J = tr H + ½|H|² − ln J. Its terms of first order cancel: tr H is J − 1
+        // minus the other invariants of H, and (tr H)² minus twice the second invariant is tr(H²).
         let symmetric = (h + h.transpose()) * half;
         let third = match D {
             3 => h.determinant(),
@@ -97,8 +108,8 @@ impl<const D: usize> ConstitutiveModel<D> for NeoHookean {
         distortion * e.lit(self.mu) + ln_j * ln_j * e.lit(0.5 * self.lambda)
     }
 
-    /// μ|Fᵀn|² + μ + λ(1 − ln J), n along the largest stretch; the last two are J² times the
-    /// second derivative by J of what Φ has of ln J.
+    /// μ|Fᵀn|² + μ + λ(1 − ln J), with n along the largest stretch. The last two terms are J² times
+    /// the second derivative by J of the terms of Φ with ln J.
     #[inline(always)]
     fn wave_modulus<R: Real>(&self, strain: DisplacementGradient<R, D>) -> R {
         let (e, beyond) = self.split(strain.jacobian_minus_one());

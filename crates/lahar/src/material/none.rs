@@ -1,14 +1,18 @@
-//! No law: particles that carry mass and momentum and do not push ("dust").
+//! No law: particles that carry mass and momentum and exert no stress ("dust").
 
-use super::{ConstitutiveModel, Dilatation};
+use super::{ConstitutiveModel, Dilatation, Preset};
 use crate::math::{Matrix, Real};
 
-/// Dust does not resist: a lone particle's J would grow until no number can hold it.
+/// The largest |J − 1| of dust. It does not resist, so that the J of a lone particle would grow until
+/// no number could represent it.
 const LARGEST_DILATATION: f64 = 1e6;
 
-/// τ = 0. The change of volume is kept, since it is what a plot of dust is coloured by.
+/// τ = 0. The change of volume is tracked all the same, for plots that color dust by it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dust;
+
+/// There are none: dust has no numbers to look up but its density.
+pub(super) const PRESETS: &[Preset] = &[];
 
 impl<const D: usize> ConstitutiveModel<D> for Dust {
     type Strain<R: Real> = Dilatation<R>;

@@ -10,8 +10,10 @@
 //!    and h grows           and h falls
 //! ```
 
-use super::{ConstitutiveModel, Corotated, DisplacementGradient, PlasticGradient, lame};
-use crate::math::{Matrix, Real, Scalar, svd};
+use super::{
+    ConstitutiveModel, Corotated, DisplacementGradient, Model, PlasticGradient, Preset, lame,
+};
+use crate::math::{Matrix, Real, svd};
 
 /// Corotated with moduli h λ, h μ; singular values of F_E clamped to [1−θc, 1+θs];
 /// h = exp(ξ(1−J_P)).
@@ -23,28 +25,37 @@ pub struct Snow {
     pub lambda: f64,
     /// Shear modulus μ at J_P = 1 \[Pa\].
     pub mu: f64,
-    /// Critical compression θc: yields below a stretch of 1 − θc.
+    /// Critical compression θc: snow yields below a stretch of 1 − θc.
     pub critical_compression: f64,
-    /// Critical stretch θs: yields above a stretch of 1 + θs.
+    /// Critical stretch θs: snow yields above a stretch of 1 + θs.
     pub critical_stretch: f64,
-    /// Hardening ξ: packed to J_P, the moduli are exp(ξ(1−J_P)) times as large.
+    /// Hardening ξ: at J_P, the moduli are exp(ξ(1−J_P)) times those at J_P = 1.
     pub hardening: f64,
-    /// The range h is clamped to.
+    /// The interval that h is clamped to.
     pub hardening_range: [f64; 2],
-    /// The range J_P is clamped to.
+    /// The interval that J_P is clamped to.
     pub plastic_jacobian_range: [f64; 2],
-    /// Which J_P the hardening reads.
+    /// The J_P that hardening follows.
     pub hardening_from: HardeningFrom,
 }
 
-/// Singular values outside the band by less than this many ε are inside it. Snow at rest on the
-/// edge of the band would otherwise yield by the rounding of σ, every substep in one direction.
+/// Singular values outside the band by less than this many ε count as inside it. Otherwise snow at
+/// rest on the edge of the band would yield by the rounding of σ in every substep, always in the same
+/// direction.
 const ROUNDING: f64 = 16.0;
 
+/// The preset of the paper.
+pub(super) const PRESETS: &[Preset] = &[Preset {
+    name: "snow",
+    about: "The snow of Stomakhin et al. 2013: 400 kg/m³, E = 140 kPa, ν = 0.2, θc = 2.5 %, θs = 0.75 %, ξ = 10.",
+    density: 400.0,
+    model: |_, _| Model::Snow(Snow::default()),
+}];
+
 impl Snow {
-    /// Young's modulus at J_P = 1 \[Pa\] and Poisson's ratio, 1.4e5 and 0.2 in Stomakhin 2013;
-    /// θc, θs and ξ from its table 2. J_P is kept within [0.6, 20], as in the MLS-MPM authors'
-    /// mls-mpm88.cpp; the paper sets no limit.
+    /// Creates snow of Young's modulus at J_P = 1 \[Pa\] and Poisson's ratio, 1.4e5 and 0.2 in
+    /// Stomakhin 2013. θc, θs and ξ are those of its table 2. J_P stays within [0.6, 20], as in the
+    /// MLS-MPM authors' mls-mpm88.cpp; the paper sets no limit.
     pub fn new(youngs_modulus: f64, poisson_ratio: f64) -> Self {
         let (lambda, mu) = lame(youngs_modulus, poisson_ratio);
         Self {
@@ -68,7 +79,7 @@ impl Snow {
         }
     }
 
-    /// h = exp(ξ(1−J_P)), within its range.
+    /// Returns h = exp(ξ(1−J_P)), within its interval.
     #[inline(always)]
     pub fn hardening<R: Real, const D: usize>(&self, strain: PlasticGradient<R, D>) -> R {
         let e = strain.hardening_jacobian_minus_one;
@@ -112,9 +123,9 @@ impl<const D: usize> ConstitutiveModel<D> for Snow {
         let old = strain.plastic_jacobian_minus_one;
         let low = old.lit(1.0 - self.critical_compression);
         let high = old.lit(1.0 + self.critical_stretch);
-        let rounding = old.lit(ROUNDING * R::Scalar::EPSILON.to_f64());
-        // What each σ is outside the band by, and J_P ← J_P Π σ/σ_clamped. Nothing is added to
-        // what stays elastic: no rounding either.
+        let rounding = old.lit(ROUNDING * R::EPSILON);
+        // The excess of each σ over the band, and J_P ← J_P Π σ/σ_clamped. Where nothing yields,
+        // nothing is added, so that there is no rounding either.
         let mut flow = trial;
         let mut plastic = old;
         for i in 0..D {
@@ -149,12 +160,12 @@ impl<const D: usize> ConstitutiveModel<D> for Snow {
     }
 }
 
-/// Which J_P the hardening reads.
+/// The J_P that hardening follows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum HardeningFrom {
-    /// After this substep's clamping.
+    /// The one after this substep's clamping.
     #[default]
     Updated,
-    /// Before it, as in mpm99 and mpm128.
+    /// The one before it, as in mpm99 and mpm128.
     Previous,
 }

@@ -1,66 +1,63 @@
-//! What a model remembers of a particle's deformation, and how it lies in storage.
-//!
-//! Differences from rest are stored, J − 1 and H = F − I: in `f32`, J itself drifts (.04 % of a
-//! tank's height in 5·10⁴ substeps), and small strains drown in the rounding of the 1.
+//! The strains that models share: how much of a deformation each of them remembers.
 
+use super::variables::{DEFORMATION_GRADIENT, JACOBIAN, Rest, Variable, Variables};
 use crate::math::near_one::power_minus_one;
 use crate::math::{Matrix, Real};
+use crate::variables;
 
-/// A particle's strain in one number or register `R`.
-pub trait Strain<R: Real, const D: usize>: Copy {
-    /// Columns of storage.
-    const COLUMNS: usize;
-    /// The column that is J − 1, if that is all this strain keeps.
-    const JACOBIAN_COLUMN: Option<usize> = None;
-    /// Whether it keeps plastic flow, J_P.
-    const IS_PLASTIC: bool = false;
-    /// No deformation, in the lanes of `like`.
-    fn rest(like: R) -> Self;
-    /// From the columns, in order.
-    fn read(column: impl FnMut(usize) -> R) -> Self;
-    /// To the columns, in order.
-    fn write(&self, column: impl FnMut(usize, R));
-    /// The strain of the deformation gradient I + H, as little of it as this one keeps.
+/// The internal variables of a model, with what they say of the deformation.
+pub trait Strain<R: Real, const D: usize>: Variables<R, D> {
+    /// Returns the strain of the deformation gradient I + `h`, other variables at rest. A strain that
+    /// stores only part of a deformation drops the remainder.
     fn from_displacement_gradient(h: Matrix<R, D>) -> Self;
-    /// This strain after plastic flow by J_P; for models without any, this strain.
+    /// Sets hidden variables from the others, for a particle that starts with given values.
     #[inline(always)]
-    fn with_plastic_jacobian_minus_one(self, _plastic: R) -> Self {
+    fn with_hidden_variables(self) -> Self {
         self
     }
-    /// H = F − I; for strains that keep J only, (J^(1/D) − 1) I, and −I for J < 0.
+    /// Returns H = F − I. A strain that stores only J returns (J^(1/D) − 1) I, and −I for J < 0.
     fn displacement_gradient(&self) -> Matrix<R, D>;
-    /// J − 1.
+    /// Returns J − 1, of the elastic part for plastic models.
     fn jacobian_minus_one(&self) -> R;
-    /// J_P − 1, zero for models without plastic flow.
+    /// Returns J_P − 1, zero for models without plastic flow.
     #[inline(always)]
     fn plastic_jacobian_minus_one(&self) -> R {
         self.jacobian_minus_one().zero()
     }
 }
 
-/// The relative change of volume: J − 1.
-#[derive(Clone, Copy, Debug)]
-pub struct Dilatation<R> {
-    /// J − 1.
-    pub jacobian_minus_one: R,
+/// J_P, the determinant of the plastic part of the deformation gradient.
+pub const PLASTIC_JACOBIAN: Variable = Variable::scalar("plastic_J", "1", Rest::One);
+
+/// J_P as hardening reads it.
+const HARDENING_JACOBIAN: Variable = Variable::scalar("hardening_J", "1", Rest::One).hidden();
+
+variables! {
+    /// The relative change of volume.
+    pub struct Dilatation<R> {
+        /// J − 1.
+        jacobian_minus_one: R = JACOBIAN,
+    }
 }
 
-/// The displacement gradient H = F − I.
-#[derive(Clone, Copy, Debug)]
-pub struct DisplacementGradient<R, const D: usize> {
-    /// H = F − I of the elastic part.
-    pub h: Matrix<R, D>,
+variables! {
+    /// The whole deformation.
+    pub struct DisplacementGradient<R, const D: usize> {
+        /// H = F − I.
+        h: Matrix<R, D> = DEFORMATION_GRADIENT,
+    }
 }
 
-/// The elastic displacement gradient and the plastic change of volume.
-#[derive(Clone, Copy, Debug)]
-pub struct PlasticGradient<R, const D: usize> {
-    /// H = F_E − I.
-    pub h: Matrix<R, D>,
-    /// J_P − 1, J_P the determinant of the plastic deformation gradient.
-    pub plastic_jacobian_minus_one: R,
-    /// J_P − 1 as hardening reads it; see [`crate::material::HardeningFrom`].
-    pub hardening_jacobian_minus_one: R,
+variables! {
+    /// The elastic deformation and the plastic change of volume.
+    pub struct PlasticGradient<R, const D: usize> {
+        /// H = F_E − I.
+        h: Matrix<R, D> = DEFORMATION_GRADIENT,
+        /// J_P − 1, J_P the determinant of the plastic deformation gradient.
+        plastic_jacobian_minus_one: R = PLASTIC_JACOBIAN,
+        /// J_P − 1 as hardening reads it; see [`HardeningFrom`](super::HardeningFrom).
+        hardening_jacobian_minus_one: R = HARDENING_JACOBIAN,
+    }
 }
 
 impl<R: Real, const D: usize> DisplacementGradient<R, D> {
@@ -79,10 +76,10 @@ pub(super) fn left_strain<R: Real, const D: usize>(h: Matrix<R, D>) -> Matrix<R,
     (h + h.transpose()) + h * h.transpose()
 }
 
-/// No less than the largest eigenvalue of FFᵀ; that eigenvalue in 2D and at rest.
+/// A bound on the largest eigenvalue of FFᵀ; exact in 2D and at rest.
 ///
-/// Mean plus √(D−1) standard deviations of the eigenvalues (H. Wolkowicz & G. Styan, "Bounds for
-/// eigenvalues using traces", Linear Algebra Appl. 29, 1980).
+/// The mean of the eigenvalues plus √(D−1) of their standard deviations (H. Wolkowicz & G. Styan,
+/// "Bounds for eigenvalues using traces", Linear Algebra Appl. 29, 1980).
 #[inline(always)]
 pub(super) fn largest_squared_stretch<R: Real, const D: usize>(h: Matrix<R, D>) -> R {
     let strain = left_strain(h);
@@ -93,24 +90,6 @@ pub(super) fn largest_squared_stretch<R: Real, const D: usize>(h: Matrix<R, D>) 
 }
 
 impl<R: Real, const D: usize> Strain<R, D> for Dilatation<R> {
-    const COLUMNS: usize = 1;
-    const JACOBIAN_COLUMN: Option<usize> = Some(0);
-    #[inline(always)]
-    fn rest(like: R) -> Self {
-        Self {
-            jacobian_minus_one: like.zero(),
-        }
-    }
-    #[inline(always)]
-    fn read(mut column: impl FnMut(usize) -> R) -> Self {
-        Self {
-            jacobian_minus_one: column(0),
-        }
-    }
-    #[inline(always)]
-    fn write(&self, mut column: impl FnMut(usize, R)) {
-        column(0, self.jacobian_minus_one);
-    }
     #[inline(always)]
     fn from_displacement_gradient(h: Matrix<R, D>) -> Self {
         Self {
@@ -129,27 +108,6 @@ impl<R: Real, const D: usize> Strain<R, D> for Dilatation<R> {
 }
 
 impl<R: Real, const D: usize> Strain<R, D> for DisplacementGradient<R, D> {
-    const COLUMNS: usize = D * D;
-    #[inline(always)]
-    fn rest(like: R) -> Self {
-        Self {
-            h: Matrix::scaled_identity(like.zero()),
-        }
-    }
-    #[inline(always)]
-    fn read(mut column: impl FnMut(usize) -> R) -> Self {
-        Self {
-            h: Matrix::from_fn(|i, j| column(j * D + i)),
-        }
-    }
-    #[inline(always)]
-    fn write(&self, mut column: impl FnMut(usize, R)) {
-        for j in 0..D {
-            for i in 0..D {
-                column(j * D + i, self.h[(i, j)]);
-            }
-        }
-    }
     #[inline(always)]
     fn from_displacement_gradient(h: Matrix<R, D>) -> Self {
         Self { h }
@@ -165,35 +123,6 @@ impl<R: Real, const D: usize> Strain<R, D> for DisplacementGradient<R, D> {
 }
 
 impl<R: Real, const D: usize> Strain<R, D> for PlasticGradient<R, D> {
-    const COLUMNS: usize = D * D + 2;
-    const IS_PLASTIC: bool = true;
-    #[inline(always)]
-    fn rest(like: R) -> Self {
-        let zero = like.zero();
-        Self {
-            h: Matrix::scaled_identity(zero),
-            plastic_jacobian_minus_one: zero,
-            hardening_jacobian_minus_one: zero,
-        }
-    }
-    #[inline(always)]
-    fn read(mut column: impl FnMut(usize) -> R) -> Self {
-        Self {
-            h: Matrix::from_fn(|i, j| column(j * D + i)),
-            plastic_jacobian_minus_one: column(D * D),
-            hardening_jacobian_minus_one: column(D * D + 1),
-        }
-    }
-    #[inline(always)]
-    fn write(&self, mut column: impl FnMut(usize, R)) {
-        for j in 0..D {
-            for i in 0..D {
-                column(j * D + i, self.h[(i, j)]);
-            }
-        }
-        column(D * D, self.plastic_jacobian_minus_one);
-        column(D * D + 1, self.hardening_jacobian_minus_one);
-    }
     #[inline(always)]
     fn from_displacement_gradient(h: Matrix<R, D>) -> Self {
         let zero = h[(0, 0)].zero();
@@ -204,10 +133,9 @@ impl<R: Real, const D: usize> Strain<R, D> for PlasticGradient<R, D> {
         }
     }
     #[inline(always)]
-    fn with_plastic_jacobian_minus_one(self, plastic: R) -> Self {
+    fn with_hidden_variables(self) -> Self {
         Self {
-            plastic_jacobian_minus_one: plastic,
-            hardening_jacobian_minus_one: plastic,
+            hardening_jacobian_minus_one: self.plastic_jacobian_minus_one,
             ..self
         }
     }

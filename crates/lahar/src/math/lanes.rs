@@ -2,7 +2,7 @@
 //! token `S` stands for. The widths are the same on all of them, so that the order of work, and
 //! with it the result, does not depend on the machine.
 
-use super::real::{Mask, Real, Scalar};
+use super::real::{Mask, Real, Register, Scalar};
 use core::ops::{Add, Mul};
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x4, f32x8, f32x16, f64x4, f64x8, i32x16, mask32x16, mask64x8};
@@ -10,7 +10,7 @@ use fearless_simd::{f32x4, f32x8, f32x16, f64x4, f64x8, i32x16, mask32x16, mask6
 /// Scalars that know their lane type on an instruction set.
 pub trait Lanes: Scalar {
     /// The lane type on the instruction set `S`.
-    type Of<S: Simd>: Real<Scalar = Self> + Copy;
+    type Of<S: Simd>: Register<Scalar = Self>;
     /// How many numbers a lane value holds.
     const WIDTH: usize;
     /// `WIDTH` numbers from the start of `slice`.
@@ -62,6 +62,18 @@ pub trait Row<S: Simd, T>: Copy + Add<Output = Self> + Mul<Output = Self> {
     fn fold_four(rows: [Self; 4], slice: &mut [T]);
 }
 
+/// Evaluates an expression for each number of a register.
+macro_rules! each_number {
+    ($register:expr, $x:ident => $of_number:expr) => {{
+        let mut result = $register;
+        for number in result.as_mut_slice() {
+            let $x = *number;
+            *number = $of_number;
+        }
+        result
+    }};
+}
+
 macro_rules! lanes {
     ($scalar:ident, $vector:ident, $mask:ident, $width:literal, $row:ident, $quad:ident, $whole:path) => {
         impl<S: Simd> Mask for $mask<S> {
@@ -76,28 +88,12 @@ macro_rules! lanes {
         }
 
         impl<S: Simd> Real for $vector<S> {
-            type Scalar = $scalar;
             type Mask = $mask<S>;
-            const LANES: usize = $width;
+            const EPSILON: f64 = <$scalar as Real>::EPSILON;
+            const LARGEST: f64 = <$scalar as Real>::LARGEST;
             #[inline(always)]
             fn lit(self, value: f64) -> Self {
                 SimdBase::splat(self.token(), value as $scalar)
-            }
-            #[inline(always)]
-            fn splat(self, value: $scalar) -> Self {
-                SimdBase::splat(self.token(), value)
-            }
-            #[inline(always)]
-            fn lane(self, index: usize) -> $scalar {
-                self.as_slice()[index]
-            }
-            #[inline(always)]
-            fn map(self, f: impl Fn($scalar) -> $scalar) -> Self {
-                let mut result = self;
-                for x in result.as_mut_slice() {
-                    *x = f(*x);
-                }
-                result
             }
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
@@ -138,6 +134,47 @@ macro_rules! lanes {
             #[inline(always)]
             fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self {
                 Select::select(mask, if_true, if_false)
+            }
+            #[inline(always)]
+            fn exp(self) -> Self {
+                each_number!(self, x => Real::exp(x))
+            }
+            #[inline(always)]
+            fn ln(self) -> Self {
+                each_number!(self, x => Real::ln(x))
+            }
+            #[inline(always)]
+            fn power_by_number(self, exponent: f64) -> Self {
+                each_number!(self, x => x.power_by_number(exponent))
+            }
+            #[inline(always)]
+            fn ln_1p_by_number(self) -> Self {
+                each_number!(self, x => x.ln_1p_by_number())
+            }
+            #[inline(always)]
+            fn minus_ln_1p_by_number(self) -> Self {
+                each_number!(self, x => x.minus_ln_1p_by_number())
+            }
+            #[inline(always)]
+            fn power_minus_one_by_number(self, exponent: f64) -> Self {
+                each_number!(self, x => x.power_minus_one_by_number(exponent))
+            }
+            #[inline(always)]
+            fn minus_power_by_number(self, exponent: f64) -> Self {
+                each_number!(self, x => x.minus_power_by_number(exponent))
+            }
+        }
+
+        impl<S: Simd> Register for $vector<S> {
+            type Scalar = $scalar;
+            const LANES: usize = $width;
+            #[inline(always)]
+            fn splat(self, value: $scalar) -> Self {
+                SimdBase::splat(self.token(), value)
+            }
+            #[inline(always)]
+            fn lane(self, index: usize) -> $scalar {
+                self.as_slice()[index]
             }
         }
 

@@ -4,7 +4,7 @@
 //! drown in the rounding of the 1. These functions keep them too: near e = 0 each is accurate to a
 //! few units in the last place of its *result*.
 
-use super::real::{Mask, Real, Scalar};
+use super::real::{Mask, Real};
 
 /// ln(1 + e), for e > −1. Relative error: 3 ε.
 ///
@@ -12,7 +12,7 @@ use super::real::{Mask, Real, Scalar};
 #[inline(always)]
 pub fn ln_1p<R: Real>(e: R) -> R {
     let (s, tail) = logarithm_series(e);
-    near_or(e, s + s + tail, libm::log1p)
+    near_or(e, s + s + tail, R::ln_1p_by_number)
 }
 
 /// e − ln(1 + e), for e > −1: ½e² and less near 0. Relative error: 4 ε.
@@ -20,18 +20,14 @@ pub fn ln_1p<R: Real>(e: R) -> R {
 pub fn minus_ln_1p<R: Real>(e: R) -> R {
     // e − 2s = e s
     let (s, tail) = logarithm_series(e);
-    near_or(e, e * s - tail, |e| e - libm::log1p(e))
+    near_or(e, e * s - tail, R::minus_ln_1p_by_number)
 }
 
 /// ln(1 + e) = 2s + tail with s = e / (2 + e), the tail being of third order; for |e| ≤ ½.
 #[inline(always)]
 fn logarithm_series<R: Real>(e: R) -> (R, R) {
     // s² ≤ 1/9: what is cut off is below 9^−TERMS of the sum.
-    let terms = if R::Scalar::EPSILON.to_f64() > 1e-10 {
-        8
-    } else {
-        16
-    };
+    let terms = if R::EPSILON > 1e-10 { 8 } else { 16 };
     let s = e / (e + e.lit(2.0));
     let square = s * s;
     let mut sum = e.lit(2.0 / (2 * terms + 1) as f64);
@@ -43,11 +39,10 @@ fn logarithm_series<R: Real>(e: R) -> (R, R) {
 
 /// `near` where |e| ≤ ½, else `far` of e. A lane's result depends on that lane alone.
 #[inline(always)]
-fn near_or<R: Real>(e: R, near: R, far: impl Fn(f64) -> f64) -> R {
+fn near_or<R: Real>(e: R, near: R, far: impl FnOnce(R) -> R) -> R {
     let is_far = e.abs().gt(e.lit(0.5));
     if is_far.any() {
-        let far = e.map(|e| R::Scalar::from_f64(far(e.to_f64())));
-        R::select(is_far, far, near)
+        R::select(is_far, far(e), near)
     } else {
         near
     }
@@ -59,7 +54,7 @@ fn near_or<R: Real>(e: R, near: R, far: impl Fn(f64) -> f64) -> R {
 #[inline(always)]
 pub fn power_minus_one<R: Real>(e: R, exponent: f64) -> R {
     if exponent.fract() != 0.0 || exponent.abs() > 16.0 {
-        return e.map(|e| R::Scalar::from_f64(libm::expm1(exponent * libm::log1p(e.to_f64()))));
+        return e.power_minus_one_by_number(exponent);
     }
     // (1 + a)(1 + b) − 1 = a + b (1 + a): both terms have one sign if a and b have.
     let times = |a: R, b: R| a + b * (a + a.one());
@@ -84,6 +79,7 @@ pub fn power_minus_one<R: Real>(e: R, exponent: f64) -> R {
 
 #[cfg(test)]
 mod tests {
+    use super::super::real::Scalar;
     use super::*;
 
     /// From just above −1 to 100, dense around 0, both signs.
@@ -104,7 +100,7 @@ mod tests {
             }
             (ours(e).to_f64() - exact).abs() / exact.abs()
         });
-        error.fold(0.0, f64::max) / T::EPSILON.to_f64()
+        error.fold(0.0, f64::max) / T::EPSILON
     }
 
     #[test]

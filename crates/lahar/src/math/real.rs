@@ -1,23 +1,27 @@
-//! One name for "a real number": a scalar, or a SIMD register full of them.
+//! Real numbers: the arithmetic that formulas are written with, and scalars.
 //!
 //! Every formula of the method is written once, generic over [`Real`], and instantiated for `f64`
-//! (the oracle), `f32`, and the lanes of the machine's vector registers ([`super::lanes`]).
+//! (the oracle), for `f32`, and for the vector registers of the machine ([`super::lanes`]).
+//! [`Real`] has arithmetic only. A type that records operations in place of computing them, in order
+//! to print a formula in another language, can implement it. Access to the numbers inside a register
+//! is a separate trait, [`Register`], which formulas do not use.
 //!
-//! A lane type can only be made from another one (the token that proves that the instruction set
-//! is there travels inside the values), so constants are made from a value at hand: `x.lit(0.5)`.
-//! `a * b + c` is never contracted; a fused multiply-add is asked for by [`Real::mul_add`], and is
-//! given only on instruction sets that are not the portable one.
+//! A register can only be made from another one, because the proof that the machine has the
+//! instruction set travels inside the value. Constants are therefore made from a value at hand:
+//! `x.lit(0.5)`. The product in `a * b + c` is always rounded; [`Real::mul_add`] asks for a fused
+//! multiply-add, and gets one on every instruction set but the portable one.
 
+use super::near_one::power_minus_one;
 use core::fmt::Debug;
 use core::ops::{
     Add, AddAssign, BitAnd, BitOr, Div, DivAssign, Mul, MulAssign, Neg, Not, Sub, SubAssign,
 };
 
-/// A truth value a lane.
+/// The result of a comparison: one truth value per lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
-    /// Whether any lane is true.
+    /// Returns true if any lane is true. A recording mask returns true.
     fn any(self) -> bool;
-    /// Whether every lane is true.
+    /// Returns true if every lane is true. A recording mask returns false.
     fn all(self) -> bool;
 }
 
@@ -32,7 +36,9 @@ impl Mask for bool {
     }
 }
 
-/// A real number, or a register of them; see the module's page.
+/// A real number, or a register of them, with the operations that formulas may use.
+///
+/// Methods ending in `_by_number` have no vector instruction: a register computes them lane by lane.
 pub trait Real:
     Copy
     + Debug
@@ -46,21 +52,15 @@ pub trait Real:
     + MulAssign
     + DivAssign
 {
-    /// `f32` or `f64`.
-    type Scalar: Scalar;
-    /// What a comparison gives.
+    /// The result of a comparison.
     type Mask: Mask;
-    /// Numbers in one value: 1 for scalars.
-    const LANES: usize;
+    /// The distance from 1 to the next larger number.
+    const EPSILON: f64;
+    /// The largest finite number.
+    const LARGEST: f64;
 
-    /// The constant `value`, rounded to the scalar type, in every lane.
+    /// The constant `value`, rounded to the precision of this type, in every lane.
     fn lit(self, value: f64) -> Self;
-    /// The scalar `value` in every lane.
-    fn splat(self, value: Self::Scalar) -> Self;
-    /// The number in lane `index`.
-    fn lane(self, index: usize) -> Self::Scalar;
-    /// `f` of each lane; for what has no vector instruction (exp, ln, pow).
-    fn map(self, f: impl Fn(Self::Scalar) -> Self::Scalar) -> Self;
 
     /// `self * a + b`: fused where the instruction set fuses, two roundings on the portable one.
     fn mul_add(self, a: Self, b: Self) -> Self;
@@ -68,11 +68,11 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
-    /// The largest integer not above.
+    /// The largest integer that is not above `self`.
     fn floor(self) -> Self;
-    /// The larger of two; unspecified if one is not a number.
+    /// The larger of two numbers; unspecified if one is NaN.
     fn max(self, other: Self) -> Self;
-    /// The smaller of two; unspecified if one is not a number.
+    /// The smaller of two numbers; unspecified if one is NaN.
     fn min(self, other: Self) -> Self;
     /// `self` with the sign of `sign`.
     fn copysign(self, sign: Self) -> Self;
@@ -94,6 +94,23 @@ pub trait Real:
     /// `if_true` where the mask is true, else `if_false`.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
 
+    /// e to the power `self`, with the same bits on every machine.
+    fn exp(self) -> Self;
+    /// Natural logarithm, with the same bits on every machine.
+    fn ln(self) -> Self;
+    /// `self` to the power `exponent`, with the same bits on every machine.
+    fn power_by_number(self, exponent: f64) -> Self;
+    /// ln(1 + `self`), computed in `f64`. Formulas call [`super::near_one::ln_1p`].
+    fn ln_1p_by_number(self) -> Self;
+    /// `self` − ln(1 + `self`), computed in `f64`. Formulas call [`super::near_one::minus_ln_1p`].
+    fn minus_ln_1p_by_number(self) -> Self;
+    /// (1 + `self`)^`exponent` − 1, computed in `f64`. Formulas call
+    /// [`super::near_one::power_minus_one`].
+    fn power_minus_one_by_number(self, exponent: f64) -> Self;
+    /// `self` − ((1 + `self`)^`exponent` − 1)/`exponent`, computed in `f64`; `exponent` is not 0. Of
+    /// second order in `self`, so that in `f32` the difference would lose its digits.
+    fn minus_power_by_number(self, exponent: f64) -> Self;
+
     /// Zero in every lane.
     #[inline(always)]
     fn zero(self) -> Self {
@@ -104,17 +121,8 @@ pub trait Real:
     fn one(self) -> Self {
         self.lit(1.0)
     }
-    /// e to the power self.
-    #[inline(always)]
-    fn exp(self) -> Self {
-        self.map(Scalar::exp_scalar)
-    }
-    /// Natural logarithm.
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.map(Scalar::ln_scalar)
-    }
-    /// `self` to the power `exponent`: by multiplications if that is a small whole number.
+    /// `self` to the power `exponent`: by multiplications if the exponent is a whole number from −16
+    /// to 16, else number by number.
     #[inline(always)]
     fn power(self, exponent: f64) -> Self {
         if exponent.fract() == 0.0 && exponent.abs() <= 16.0 {
@@ -133,65 +141,55 @@ pub trait Real:
                 result
             }
         } else {
-            self.map(|x| x.pow_scalar(exponent))
+            self.power_by_number(exponent)
         }
     }
-    /// Whether each lane is a finite number.
+    /// True in the lanes that hold a finite number.
     #[inline(always)]
     fn is_finite(self) -> Self::Mask {
-        self.abs().le(self.splat(Self::Scalar::MAX))
+        self.abs().le(self.lit(Self::LARGEST))
     }
 }
 
-/// `f32` or `f64`: a [`Real`] with one lane, and what storage needs of it.
+/// A [`Real`] whose numbers can be read and written: a scalar, or a vector register.
+pub trait Register: Real {
+    /// The type of one lane, `f32` or `f64`.
+    type Scalar: Scalar;
+    /// The number of lanes: 1 for scalars.
+    const LANES: usize;
+    /// Returns a register with `value` in every lane.
+    fn splat(self, value: Self::Scalar) -> Self;
+    /// Returns the number in lane `index`.
+    fn lane(self, index: usize) -> Self::Scalar;
+}
+
+/// `f32` or `f64`: a [`Register`] of one lane that storage is made of.
 pub trait Scalar:
-    Real<Scalar = Self, Mask = bool> + PartialOrd + Default + Send + Sync + 'static + core::iter::Sum
+    Register<Scalar = Self, Mask = bool>
+    + PartialOrd
+    + Default
+    + Send
+    + Sync
+    + 'static
+    + core::iter::Sum
 {
-    /// The largest finite number.
-    const MAX: Self;
-    /// The distance from 1 to the next number.
-    const EPSILON: Self;
     /// "f32" or "f64".
     const NAME: &'static str;
-    /// The nearest number to `value`.
+    /// Rounds `value` to the nearest number of this type.
     fn from_f64(value: f64) -> Self;
-    /// Exact.
+    /// Converts to `f64`, exactly.
     fn to_f64(self) -> f64;
-    /// As a column of a snapshot.
-    fn data(values: Vec<Self>) -> crate::array::Data;
-    /// As an array of a checkpoint.
-    fn values(values: Vec<Self>) -> crate::array::Values;
-    /// From an array of a checkpoint, if it is of this type.
-    fn from_values(values: crate::array::Values) -> Option<Vec<Self>>;
-    /// e to the power self, the same bits on every machine.
-    fn exp_scalar(self) -> Self;
-    /// Natural logarithm, the same bits on every machine.
-    fn ln_scalar(self) -> Self;
-    /// Power, the same bits on every machine.
-    fn pow_scalar(self, exponent: f64) -> Self;
 }
 
 macro_rules! scalar {
-    ($t:ident, $variant:ident, $exp:path, $ln:path, $pow:path) => {
+    ($t:ident, $exp:path, $ln:path, $pow:path) => {
         impl Real for $t {
-            type Scalar = $t;
             type Mask = bool;
-            const LANES: usize = 1;
+            const EPSILON: f64 = <$t>::EPSILON as f64;
+            const LARGEST: f64 = <$t>::MAX as f64;
             #[inline(always)]
             fn lit(self, value: f64) -> Self {
                 value as $t
-            }
-            #[inline(always)]
-            fn splat(self, value: $t) -> Self {
-                value
-            }
-            #[inline(always)]
-            fn lane(self, _: usize) -> $t {
-                self
-            }
-            #[inline(always)]
-            fn map(self, f: impl Fn($t) -> $t) -> Self {
-                f(self)
             }
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
@@ -233,11 +231,52 @@ macro_rules! scalar {
             fn select(mask: bool, if_true: Self, if_false: Self) -> Self {
                 if mask { if_true } else { if_false }
             }
+            #[inline]
+            fn exp(self) -> Self {
+                $exp(self)
+            }
+            #[inline]
+            fn ln(self) -> Self {
+                $ln(self)
+            }
+            #[inline]
+            fn power_by_number(self, exponent: f64) -> Self {
+                $pow(self, exponent as $t)
+            }
+            #[inline(always)]
+            fn ln_1p_by_number(self) -> Self {
+                libm::log1p(f64::from(self)) as $t
+            }
+            #[inline(always)]
+            fn minus_ln_1p_by_number(self) -> Self {
+                let e = f64::from(self);
+                (e - libm::log1p(e)) as $t
+            }
+            #[inline(always)]
+            fn power_minus_one_by_number(self, exponent: f64) -> Self {
+                libm::expm1(exponent * libm::log1p(f64::from(self))) as $t
+            }
+            #[inline(always)]
+            fn minus_power_by_number(self, exponent: f64) -> Self {
+                let e = f64::from(self);
+                (e - power_minus_one(e, exponent) / exponent) as $t
+            }
+        }
+
+        impl Register for $t {
+            type Scalar = $t;
+            const LANES: usize = 1;
+            #[inline(always)]
+            fn splat(self, value: $t) -> Self {
+                value
+            }
+            #[inline(always)]
+            fn lane(self, _: usize) -> $t {
+                self
+            }
         }
 
         impl Scalar for $t {
-            const MAX: Self = <$t>::MAX;
-            const EPSILON: Self = <$t>::EPSILON;
             const NAME: &'static str = stringify!($t);
             #[inline(always)]
             fn from_f64(value: f64) -> Self {
@@ -247,33 +286,9 @@ macro_rules! scalar {
             fn to_f64(self) -> f64 {
                 f64::from(self)
             }
-            fn data(values: Vec<Self>) -> crate::array::Data {
-                crate::array::Data::$variant(values)
-            }
-            fn values(values: Vec<Self>) -> crate::array::Values {
-                crate::array::Values::$variant(values)
-            }
-            fn from_values(values: crate::array::Values) -> Option<Vec<Self>> {
-                match values {
-                    crate::array::Values::$variant(values) => Some(values),
-                    _ => None,
-                }
-            }
-            #[inline]
-            fn exp_scalar(self) -> Self {
-                $exp(self)
-            }
-            #[inline]
-            fn ln_scalar(self) -> Self {
-                $ln(self)
-            }
-            #[inline]
-            fn pow_scalar(self, exponent: f64) -> Self {
-                $pow(self, exponent as $t)
-            }
         }
     };
 }
 
-scalar!(f32, F32, libm::expf, libm::logf, libm::powf);
-scalar!(f64, F64, libm::exp, libm::log, libm::pow);
+scalar!(f32, libm::expf, libm::logf, libm::powf);
+scalar!(f64, libm::exp, libm::log, libm::pow);

@@ -21,7 +21,7 @@
 //! orthonormal basis, revisited", JCGT 6 (2017).
 
 use super::matrix::Matrix;
-use super::real::{Real, Scalar};
+use super::real::Real;
 use super::vector::Vector;
 
 /// F taken apart as in the picture of the module's page.
@@ -97,7 +97,7 @@ pub(super) fn scaled<R: Real, const D: usize>(f: Matrix<R, D>) -> (Matrix<R, D>,
 /// length is below ε².
 #[inline(always)]
 pub(super) fn direction<R: Real>(x: R, y: R) -> (R, R, R) {
-    let epsilon = R::Scalar::EPSILON.to_f64();
+    let epsilon = R::EPSILON;
     let squared = x.mul_add(x, y * y);
     let length = squared.sqrt();
     let inverse = x.one() / length;
@@ -142,7 +142,7 @@ fn eigenvector_apart<R: Real>(f: Matrix<R, 3>) -> (Vector<R, 3>, R::Mask) {
     let half = sum.lit(0.5);
     let h = determinant * half * (inverse_p * inverse_p * inverse_p);
     // Where C is a multiple of the identity but for rounding errors, any direction will do.
-    let epsilon = R::Scalar::EPSILON.to_f64();
+    let epsilon = R::EPSILON;
     let apart = p_squared.gt(sum.lit((0.25 * epsilon).powi(2)));
     let shift = R::select(apart, (p * largest_root(h.abs())).copysign(h), sum.one());
 
@@ -182,11 +182,7 @@ fn largest_root<R: Real>(h: R) -> R {
         .mul_add(h, h.lit(0.330_660_7))
         .mul_add(h, h.lit(1.732_132_66));
     let three = h.lit(3.0);
-    let steps = if R::Scalar::EPSILON.to_f64() > 1e-10 {
-        1
-    } else {
-        2
-    };
+    let steps = if R::EPSILON > 1e-10 { 1 } else { 2 };
     for _ in 0..steps {
         let square = t * t;
         let value = t.mul_add(square - three, -(h + h));

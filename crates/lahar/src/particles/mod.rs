@@ -1,6 +1,9 @@
 //! Particles: the one table of their fields, storage, and snapshots for everything outside.
 
 pub use crate::array::Data;
+pub use crate::math::Shape;
+
+use crate::material::{DEFORMATION_GRADIENT, Model, SHOWN_VARIABLES, Variable};
 
 mod chunk;
 mod sort;
@@ -32,40 +35,14 @@ pub enum Field {
     Jacobian,
     /// F; of the elastic part for plastic models.
     DeformationGradient,
-    /// J_P of plastic models; 1 for others.
-    PlasticJacobian,
+    /// An internal variable of a model, besides J and F; at rest for materials that do not have it.
+    Variable(&'static Variable),
     /// −tr σ/d of the Cauchy stress.
     Pressure,
     /// Its mass.
     Mass,
     /// Its volume at rest V⁰.
     Volume0,
-}
-
-/// How many numbers a field has a particle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
-    /// One.
-    Scalar,
-    /// D.
-    Vector,
-    /// D × D, row by row.
-    Matrix,
-}
-
-impl Shape {
-    /// Numbers a particle, in `dimension` dimensions.
-    pub fn len(self, dimension: usize) -> usize {
-        match self {
-            Self::Scalar => 1,
-            Self::Vector => dimension,
-            Self::Matrix => dimension * dimension,
-        }
-    }
-    /// Never: a field has at least one number.
-    pub fn is_empty(self) -> bool {
-        false
-    }
 }
 
 /// One line of the table of fields.
@@ -81,35 +58,99 @@ pub struct FieldInfo {
     pub unit: &'static str,
 }
 
-macro_rules! fields {
-    ($($field:ident $name:literal $shape:ident $unit:literal;)*) => {
-        /// Every field, in the order of files.
-        pub const FIELDS: &[FieldInfo] = &[$(FieldInfo { field: Field::$field, name: $name, shape: Shape::$shape, unit: $unit }),*];
-    };
-}
+/// The fields that all particles have, in the order of files.
+const COMMON: [FieldInfo; 11] = {
+    const fn field(
+        field: Field,
+        name: &'static str,
+        shape: Shape,
+        unit: &'static str,
+    ) -> FieldInfo {
+        FieldInfo {
+            field,
+            name,
+            shape,
+            unit,
+        }
+    }
+    [
+        field(Field::Position, "position", Shape::Vector, "m"),
+        field(Field::Velocity, "velocity", Shape::Vector, "m/s"),
+        field(Field::Affine, "affine", Shape::Matrix, "1/s"),
+        field(Field::Jacobian, "J", Shape::Scalar, "1"),
+        field(
+            Field::DeformationGradient,
+            "deformation_gradient",
+            Shape::Matrix,
+            "1",
+        ),
+        field(Field::Pressure, "pressure", Shape::Scalar, "Pa"),
+        field(Field::Mass, "mass", Shape::Scalar, "kg"),
+        field(Field::Volume0, "volume0", Shape::Scalar, "m^3"),
+        field(Field::Material, "material", Shape::Scalar, ""),
+        field(Field::Body, "body", Shape::Scalar, ""),
+        field(Field::Id, "id", Shape::Scalar, ""),
+    ]
+};
 
-fields! {
-    Position "position" Vector "m";
-    Velocity "velocity" Vector "m/s";
-    Affine "affine" Matrix "1/s";
-    Jacobian "J" Scalar "1";
-    DeformationGradient "deformation_gradient" Matrix "1";
-    PlasticJacobian "plastic_J" Scalar "1";
-    Pressure "pressure" Scalar "Pa";
-    Mass "mass" Scalar "kg";
-    Volume0 "volume0" Scalar "m^3";
-    Material "material" Scalar "";
-    Body "body" Scalar "";
-    Id "id" Scalar "";
-}
+/// The number of common fields that stand before the internal variables.
+const BEFORE_VARIABLES: usize = 5;
+
+/// Every field, in the order of files. The internal variables of the built-in models are among them.
+pub const FIELDS: &[FieldInfo] = &{
+    let mut all = [COMMON[0]; COMMON.len() + SHOWN_VARIABLES.len()];
+    let mut i = 0;
+    while i < all.len() {
+        all[i] = if i < BEFORE_VARIABLES {
+            COMMON[i]
+        } else if i < BEFORE_VARIABLES + SHOWN_VARIABLES.len() {
+            Field::of_variable(&SHOWN_VARIABLES[i - BEFORE_VARIABLES])
+        } else {
+            COMMON[i - SHOWN_VARIABLES.len()]
+        };
+        i += 1;
+    }
+    all
+};
 
 impl Field {
-    /// Its line in [`FIELDS`].
-    pub fn info(self) -> &'static FieldInfo {
-        FIELDS
-            .iter()
-            .find(|info| info.field == self)
-            .expect("every field is in the table")
+    /// Returns the name, the shape and the unit of the field.
+    pub fn info(self) -> FieldInfo {
+        match self {
+            Self::Variable(variable) => Self::of_variable(variable),
+            field => *COMMON
+                .iter()
+                .find(|info| info.field == field)
+                .expect("all other fields are common"),
+        }
+    }
+
+    const fn of_variable(variable: &'static Variable) -> FieldInfo {
+        FieldInfo {
+            field: Self::Variable(variable),
+            name: variable.name,
+            shape: variable.shape,
+            unit: variable.unit,
+        }
+    }
+
+    /// Returns true if particles of `model` store this field. A model that stores only J has
+    /// F = J^(1/D) I, and a variable that a model does not have is at rest.
+    pub fn is_stored_by(self, model: &Model) -> bool {
+        match self {
+            Self::DeformationGradient => model.variables().contains(&DEFORMATION_GRADIENT),
+            Self::Variable(variable) => model.variables().contains(variable),
+            Self::Id
+            | Self::Body
+            | Self::Material
+            | Self::Position
+            | Self::Velocity
+            | Self::Affine
+            | Self::Jacobian
+            | Self::Pressure
+            | Self::Mass
+            | Self::Volume0 => true,
+        }
     }
 }
 

@@ -7,7 +7,7 @@ mod probe;
 
 pub use command::{Command, Pointer, PointerAction};
 pub use isa::Isa;
-pub use particle_batch::{Deformation, ParticleBatch};
+pub use particle_batch::{Deformation, ParticleBatch, StartingValues};
 pub use probe::{Gauge, Plate, Probe, ProbeSample, ProbeSamples};
 
 use crate::boundary::{Collider, Corners, Cushion, Domain};

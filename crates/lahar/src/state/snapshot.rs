@@ -1,9 +1,10 @@
 //! Copies of particles for everything outside: rows by ascending id, whatever the order of storage.
 
 use crate::instance::Instance;
+use crate::material;
 use crate::parallel;
 use crate::particles::{Data, Field, Snapshot};
-use crate::particles::{Group, Layout};
+use crate::particles::{Group, Layout, MOST_COLUMNS};
 use crate::simulation::Simulation;
 
 /// Where a particle lies.
@@ -100,29 +101,30 @@ fn column<T: Instance<D>, const D: usize>(
             let block = blocks[place.group as usize][row];
             out.copy_from_slice(&simulation.position(group(place), block, row));
         })),
-        _ => T::data(fill(places, width, |place, out: &mut [T]| {
-            let (group, row) = (group(place), place.row as usize);
-            let at = |column: usize| group.columns[column][row];
-            match field {
-                Field::Velocity => {
-                    (0..D).for_each(|axis| out[axis] = at(Layout::velocity(D) + axis))
-                }
-                Field::Affine => {
-                    (0..D * D).for_each(|k| out[k] = at(Layout::affine(D) + k % D * D + k / D));
-                }
-                Field::Mass => out[0] = group.mass.get(row),
-                _ => out[0] = group.volume0.get(row),
-            }
+        Field::Velocity => T::data(fill(places, width, |place, out: &mut [T]| {
+            let (columns, row) = (&group(place).columns, place.row as usize);
+            (0..D).for_each(|axis| out[axis] = columns[Layout::velocity(D) + axis][row]);
         })),
+        Field::Affine => T::data(fill(places, width, |place, out: &mut [T]| {
+            let (columns, row) = (&group(place).columns, place.row as usize);
+            (0..D * D).for_each(|k| out[k] = columns[Layout::affine(D) + k % D * D + k / D][row]);
+        })),
+        Field::Mass => T::data(fill(places, width, |place, out: &mut [T]| {
+            out[0] = group(place).mass.get(place.row as usize);
+        })),
+        Field::Volume0 => T::data(fill(places, width, |place, out: &mut [T]| {
+            out[0] = group(place).volume0.get(place.row as usize);
+        })),
+        Field::Jacobian | Field::DeformationGradient | Field::Variable(_) | Field::Pressure => {
+            unreachable!("these follow from the strain")
+        }
     }
 }
 
 /// Whether a field follows from the strain by the material's law.
 fn is_described(field: Field) -> bool {
     match field {
-        Field::Jacobian | Field::DeformationGradient | Field::PlasticJacobian | Field::Pressure => {
-            true
-        }
+        Field::Jacobian | Field::DeformationGradient | Field::Variable(_) | Field::Pressure => true,
         Field::Id
         | Field::Body
         | Field::Material
@@ -185,7 +187,7 @@ fn describe_pieces<T: Instance<D>, const D: usize>(
     for (index, place) in places.iter().enumerate() {
         let (group, row) = (&simulation.groups[place.group as usize], place.row as usize);
         let at = |column: usize| group.columns[column][row].to_f64();
-        let mut strain = [0.0; 16];
+        let mut strain = [0.0; MOST_COLUMNS];
         let strain = &mut strain[..group.law.strain_columns()];
         for (column, value) in strain.iter_mut().enumerate() {
             *value = at(Layout::strain(D) + column);
@@ -194,14 +196,28 @@ fn describe_pieces<T: Instance<D>, const D: usize>(
             core::array::from_fn(|i| core::array::from_fn(|j| at(Layout::affine(D) + j * D + i)));
         let state = group.law.describe(strain, gradient);
         for (field, values) in &mut columns {
-            match field {
-                Field::Jacobian => values[index] = T::from_f64(state.jacobian),
-                Field::PlasticJacobian => values[index] = T::from_f64(state.plastic_jacobian),
-                Field::Pressure => values[index] = T::from_f64(state.pressure),
-                _ => (0..D * D).for_each(|k| {
-                    values[index * D * D + k] =
-                        T::from_f64(state.deformation_gradient[k / D][k % D]);
+            let width = field.info().shape.len(D);
+            let out = &mut values[index * width..][..width];
+            match *field {
+                Field::Jacobian => out[0] = T::from_f64(state.jacobian),
+                Field::Pressure => out[0] = T::from_f64(state.pressure),
+                Field::DeformationGradient => (0..D * D).for_each(|k| {
+                    out[k] = T::from_f64(state.deformation_gradient[k / D][k % D]);
                 }),
+                Field::Variable(variable) => {
+                    let shown = material::values(variable, group.law.variables(), strain, D);
+                    out.iter_mut()
+                        .zip(shown)
+                        .for_each(|(out, value)| *out = T::from_f64(value));
+                }
+                Field::Id
+                | Field::Body
+                | Field::Material
+                | Field::Position
+                | Field::Velocity
+                | Field::Affine
+                | Field::Mass
+                | Field::Volume0 => unreachable!("these are stored as they are"),
             }
         }
     }

@@ -10,7 +10,7 @@ use crate::boundary::walls::Walls;
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_vector};
-use crate::math::{Lanes, Mask, Matrix, Real, Vector};
+use crate::math::{Lanes, Mask, Matrix, Real, Register, Vector};
 use crate::parallel;
 use crate::particles::in_range;
 use crate::particles::{AHEAD, CHUNK, Largest, Padded, close_chunk, open_chunk};

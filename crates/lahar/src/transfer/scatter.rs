@@ -4,7 +4,7 @@ use super::{Scheme, Stage, rows, with_scheme};
 use crate::grid::{Reach, Tiles, tile_edge};
 use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_matrix, load_vector};
-use crate::math::{Lanes, Matrix, Real, Vector};
+use crate::math::{Lanes, Matrix, Real, Register, Vector};
 use crate::parallel;
 use crate::particles::{AHEAD, CHUNK, Chunk, Padded, Rows};
 use crate::particles::{Group, Layout, Run, block_edge, slices, split_runs};

@@ -4,10 +4,10 @@
 use crate::engine::{Engine, Fast, Oracle, State};
 use crate::fixtures::{self, Random, ball, brawl, brawl_with_all_options};
 use lahar::Instance;
-use lahar::material::VolumeRule;
+use lahar::material::{LinearElastic, VolumeRule};
 use lahar::{
-    Contact, Domain, ForceForm, Isa, Kernel, Model, ParticleBatch, Setup, Sides, Simulate,
-    Simulation, TimeStep, Transfer, WallStyle,
+    Contact, Domain, ForceForm, Isa, Kernel, Material, Model, ParticleBatch, Setup, Sides,
+    Simulate, Simulation, TimeStep, Transfer, WallStyle,
 };
 
 /// The smallest scale that the difference of a field is divided by, so that noise is not compared with noise: a cell,
@@ -118,9 +118,18 @@ where
     f64: Instance<D>,
 {
     for isa in Isa::ALL.into_iter().filter(|isa| isa.is_available()) {
-        let (mut setup, batches) = brawl::<D>(cells);
+        let (mut setup, mut batches) = brawl::<D>(cells);
         setup.time_step = TimeStep::Fixed(5e-4);
         setup.isa = isa;
+        batches.push(ParticleBatch {
+            material: setup.materials.len(),
+            ..batches[1].clone()
+        });
+        setup.materials.push(Material {
+            name: "linear elastic".into(),
+            density: 500.0,
+            model: Model::LinearElastic(LinearElastic::new(2e3, 0.3)),
+        });
         for batch in &batches {
             let difference = compare::<f64, D>(&setup, core::slice::from_ref(batch), steps);
             let name = &setup.materials[batch.material].name;

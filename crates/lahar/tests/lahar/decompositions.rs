@@ -11,7 +11,7 @@
 
 use crate::fixtures::Random;
 use fearless_simd::{Level, Simd, dispatch};
-use lahar::math::{Lanes, Mask, Matrix, Polar, Real, Svd, Vector, polar, svd};
+use lahar::math::{Lanes, Mask, Matrix, Polar, Real, Register, Svd, Vector, polar, svd};
 use std::hint::black_box;
 
 /// The number of matrices of each kind, over all dimensions and precisions.
@@ -492,7 +492,7 @@ fn normalizer(x: f64) -> f64 {
 
 /// Returns the worst error of each claim over `SAMPLES` / 4 matrices of a kind.
 fn worst<T: Number, const D: usize>(kind: Kind) -> [f64; CLAIMS.len()] {
-    let epsilon = T::EPSILON.to_f64();
+    let epsilon = T::EPSILON;
     let mut random = Random(1);
     let mut worst = [0.0; CLAIMS.len()];
     let mut outcomes: [_; 3] = std::array::from_fn(|_| Outcome::<T, D>::new());

@@ -4,10 +4,13 @@
 //! is summed by the oracle, from what the engine shows.
 
 use lahar::Instance;
+use lahar::material::PLASTIC_JACOBIAN;
 use lahar::math::{Matrix, Vector};
 use lahar::particles::Field;
 use lahar::reference::Reference;
-use lahar::{Deformation, Isa, ParticleBatch, Setup, Simulate, Simulation, TimeStep};
+use lahar::{
+    Deformation, Isa, ParticleBatch, Setup, Simulate, Simulation, StartingValues, TimeStep,
+};
 
 /// A particle as an engine shows it.
 #[derive(Clone, Debug)]
@@ -109,7 +112,13 @@ pub(crate) fn oracle_of<const D: usize>(setup: &Setup<D>, particles: &[State<D>]
         mass: vec![p.mass],
         affine: vec![p.affine],
         deformation: Deformation::Gradient(vec![p.deformation_gradient]),
-        plastic_jacobian: vec![p.plastic_jacobian],
+        variables: match setup.materials[p.material].model.variables() {
+            table if table.contains(&PLASTIC_JACOBIAN) => vec![StartingValues {
+                name: PLASTIC_JACOBIAN.name.to_owned(),
+                values: vec![p.plastic_jacobian],
+            }],
+            _ => Vec::new(),
+        },
     };
     let batches: Vec<_> = particles.iter().map(batch).collect();
     Reference::new(setup, &batches).expect("the engine's particles are sound")
@@ -163,7 +172,7 @@ impl<T: Instance<D>, const D: usize> Engine<D> for Fast<T, D> {
             Field::Affine,
             Field::DeformationGradient,
             Field::Jacobian,
-            Field::PlasticJacobian,
+            Field::Variable(&PLASTIC_JACOBIAN),
         ];
         let snapshot = self.0.snapshot(&fields);
         let columns: Vec<Vec<f64>> = snapshot

@@ -1,8 +1,8 @@
 //! Scenes and helpers that several tests share.
 
 use lahar::material::{
-    Corotated, Dust, Eos, Fluid, HardeningFrom, NeoHookean, Snow, ViscousStress, VolumeCorrection,
-    VolumeRule, lame,
+    Corotated, Dust, Eos, Fluid, HardeningFrom, NeoHookean, PLASTIC_JACOBIAN, Snow, ViscousStress,
+    VolumeCorrection, VolumeRule, lame,
 };
 use lahar::particles::{Data, Field, Snapshot};
 use lahar::{
@@ -279,7 +279,7 @@ pub(crate) const ALL: &[Field] = &[
     Field::Affine,
     Field::Jacobian,
     Field::DeformationGradient,
-    Field::PlasticJacobian,
+    Field::Variable(&PLASTIC_JACOBIAN),
     Field::Mass,
     Field::Material,
     Field::Body,

@@ -1,44 +1,44 @@
-//! How the viscosity of a fluid depends on how fast it is sheared.
+//! Viscosity that depends on the rate of shear.
 
 use crate::math::{Matrix, Real};
 
-/// How viscosity depends on the rate of shear.
+/// The dependence of viscosity on the rate of shear.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Rheology {
-    /// Not at all.
+    /// Constant viscosity.
     #[default]
     Newtonian,
-    /// By yield stress and power law.
+    /// A yield stress and a power law are added.
     HerschelBulkley(HerschelBulkley),
 }
 
-/// Stress τ_y + K γ̇ⁿ at the rate of shear γ̇ (Herschel and Bulkley 1926). Without yield stress a power law,
-/// with n = 1 a Bingham fluid, with both a Newtonian one.
+/// Shear stress τ_y + K γ̇ⁿ at the rate of shear γ̇ (Herschel and Bulkley 1926). Without yield stress the
+/// fluid follows a power law; with n = 1 it is a Bingham fluid; with both it is Newtonian.
 ///
-/// Regularised (Papanastasiou 1987): what would stand still creeps, with the viscosity that it has at the
-/// creep rate γ̇₀. Viscosity: K (γ̇² + γ̇₀²)^((n−1)/2) + τ_y (1 − e^(−γ̇/γ̇₀))/γ̇.
+/// The law is regularized (Papanastasiou 1987): below its yield stress the fluid creeps, with the
+/// viscosity that it has at the creep rate γ̇₀. The viscosity is
+/// K (γ̇² + γ̇₀²)^((n−1)/2) + τ_y (1 − e^(−γ̇/γ̇₀))/γ̇.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HerschelBulkley {
-    /// τ_y \[Pa\].
+    /// Yield stress τ_y \[Pa\].
     pub yield_stress: f64,
-    /// K \[Pa sⁿ\].
+    /// Consistency K \[Pa sⁿ\].
     pub consistency: f64,
-    /// n, at most 1: an explicit time step needs a bound on viscosity, and one that grows with the
-    /// rate has none.
+    /// Flow index n, at most 1: an explicit time step needs a bound on viscosity, and a viscosity that
+    /// grows with the rate has none.
     pub flow_index: f64,
-    /// γ̇₀ \[1/s\]. The lower, the better a plug holds together, and the shorter the time step.
+    /// Creep rate γ̇₀ \[1/s\]. The lower it is, the firmer a plug stands, and the shorter the time step.
     pub creep_rate: f64,
 }
 
-/// The creep rate \[1/s\] where nothing else is said: what stands still on a slope flows by a tenth of its
-/// depth a second.
+/// The default creep rate \[1/s\]: mud at rest on a slope flows by a tenth of its depth per second.
 pub const CREEP_RATE: f64 = 0.1;
 
-/// Below this, (1 − e^−x)/x is summed as a series.
+/// The x below which (1 − e^−x)/x is summed as a series.
 const SMALL: f64 = 0.1;
 
 impl HerschelBulkley {
-    /// Viscosity \[Pa s\] at the rate of shear γ̇ \[1/s\].
+    /// Returns the viscosity \[Pa s\] at the rate of shear γ̇ \[1/s\].
     #[inline(always)]
     pub fn viscosity<R: Real>(&self, rate: R) -> R {
         let creep = self.creep_rate;
@@ -48,7 +48,7 @@ impl HerschelBulkley {
         thinning + yielding(x) * x.lit(self.yield_stress / creep) // (17)
     }
 
-    /// Viscosity of what stands still \[Pa s\], the largest.
+    /// Returns the largest viscosity \[Pa s\], that of fluid at rest.
     pub fn largest_viscosity(&self) -> f64 {
         self.viscosity(0.0)
     }
@@ -66,8 +66,8 @@ fn yielding<R: Real>(x: R) -> R {
     R::select(x.lt(x.lit(SMALL)), series, closed)
 }
 
-/// γ̇ = √(2 D:D) of the deviatoric rate of deformation D = ½(L + Lᵀ) − (tr L/d) I of the velocity
-/// gradient L \[1/s\].
+/// Returns the rate of shear γ̇ = √(2 D:D) \[1/s\], with the deviatoric rate of deformation
+/// D = ½(L + Lᵀ) − (tr L/d) I of the velocity gradient L \[1/s\].
 #[inline(always)]
 pub fn shear_rate<R: Real, const D: usize>(velocity_gradient: Matrix<R, D>) -> R {
     let l = velocity_gradient;

@@ -1,0 +1,24 @@
+//! The shape of a quantity: how many numbers it has.
+
+/// Whether a quantity is one number, a vector or a matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Shape {
+    /// One number.
+    Scalar,
+    /// D numbers.
+    Vector,
+    /// D × D numbers, row by row.
+    Matrix,
+}
+
+impl Shape {
+    /// Returns the number of entries in `dimension` dimensions.
+    #[expect(clippy::len_without_is_empty, reason = "no shape is empty")]
+    pub const fn len(self, dimension: usize) -> usize {
+        match self {
+            Self::Scalar => 1,
+            Self::Vector => dimension,
+            Self::Matrix => dimension * dimension,
+        }
+    }
+}
