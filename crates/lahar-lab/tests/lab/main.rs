@@ -1,3 +1,4 @@
-//! Validation cases against their targets. One program, so that the crate is linked once.
+//! Tests of validation and of the method, in one binary, so that the crate is linked once.
 
+mod method;
 mod validation;

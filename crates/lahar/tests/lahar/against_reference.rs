@@ -1,23 +1,24 @@
 //! The engine against the oracle, in every combination of dimension, kernel, transfer, force and material: storage,
 //! lanes, rows, sorting and threads must not change the results beyond rounding.
 
-use crate::engine::{Engine, Fast, Oracle, State};
-use crate::fixtures::{self, Random, ball, brawl, brawl_with_all_options};
+use crate::fixtures::{self, ball, brawl, brawl_with_all_options};
 use lahar::Instance;
 use lahar::material::{LinearElastic, VolumeRule};
 use lahar::{
     Contact, Domain, ForceForm, Isa, Kernel, Material, Model, ParticleBatch, Setup, Sides,
     Simulate, Simulation, TimeStep, Transfer, WallStyle,
 };
+use lahar_lab::method::engine::{Build, Engine, Fast, Oracle, ParticleState};
+use lahar_lab::method::random::Random;
 
 /// The smallest scale that the difference of a field is divided by, so that noise is not compared with noise: a cell,
 /// a slow speed, that speed over a cell, F, and a strain of one percent.
 const SCALES: [f64; 5] = [1.0 / 32.0, 0.1, 3.2, 1.0, 0.01];
 
 /// Returns the largest difference of any field, relative to that field's own largest value.
-fn worst<const D: usize>(a: &[State<D>], b: &[State<D>]) -> f64 {
+fn worst<const D: usize>(a: &[ParticleState<D>], b: &[ParticleState<D>]) -> f64 {
     assert_eq!(a.len(), b.len());
-    let fields = |p: &State<D>| -> Vec<Vec<f64>> {
+    let fields = |p: &ParticleState<D>| -> Vec<Vec<f64>> {
         vec![
             p.position.to_vec(),
             p.velocity.to_vec(),
@@ -50,11 +51,11 @@ fn compare<T: Instance<D>, const D: usize>(
     batches: &[ParticleBatch<D>],
     steps: usize,
 ) -> f64 {
-    let mut fast = Fast::<T, D>::new(setup, batches);
-    let mut oracle = Oracle::<D>::new(setup, batches);
+    let mut fast = Fast::<T, D>::build(setup, batches).expect("a good setup");
+    let mut oracle = Oracle::<D>::build(setup, batches).expect("a good setup");
     for _ in 0..steps {
-        fast.substep();
-        oracle.substep();
+        fast.substep().expect("a substep");
+        oracle.substep().expect("a substep");
     }
     worst(&oracle.particles(), &fast.particles())
 }
@@ -359,11 +360,12 @@ fn corrected_volume<T: Instance<D>, const D: usize>(limit: f64) {
                 difference < limit,
                 "{kernel:?} {transfer:?}: {difference:e}"
             );
-            let mut corrected = Fast::<T, D>::new(&setup, &batches);
-            let mut uncorrected = Fast::<T, D>::new(&plain(&setup), &batches);
+            let mut corrected = Fast::<T, D>::build(&setup, &batches).expect("a good setup");
+            let mut uncorrected =
+                Fast::<T, D>::build(&plain(&setup), &batches).expect("a good setup");
             for _ in 0..steps {
-                corrected.substep();
-                uncorrected.substep();
+                corrected.substep().expect("a substep");
+                uncorrected.substep().expect("a substep");
             }
             let effect = worst(&corrected.particles(), &uncorrected.particles());
             assert!(

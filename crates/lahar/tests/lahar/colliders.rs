@@ -1,7 +1,7 @@
 //! Colliders: their surface lies where it is drawn even between nodes, their impulse is the momentum that the material
 //! loses, material can leave a `separate` surface freely, and no particle passes through.
 
-use crate::fixtures::{self, CONTACTS, ball, brawl, colliders_of_all_kinds, one_of_each};
+use crate::fixtures::{CONTACTS, ball, brawl, colliders_of_all_kinds, one_of_each};
 
 use crate::walled::{SEPARATE, SLIP, both, field};
 use lahar::material::{Corotated, Fluid, lame};
@@ -10,6 +10,7 @@ use lahar::{
     Collider, Contact, Deformation, Domain, Instance, Material, Model, Motion, ParticleBatch,
     Setup, Simulate, Simulation, Solid, TimeStep, Transfer, WallStyle,
 };
+use lahar_lab::method::random::Random;
 
 const DENSITY: f64 = 1000.0; // kg/m³
 const G: f64 = 9.81; // m/s²
@@ -393,7 +394,7 @@ fn a_block_stays_on_a_slope_within_the_friction_angle() {
 /// A fast piston takes a ball of dust along, and no particle stays behind.
 #[test]
 fn a_fast_piston_passes_no_particle() {
-    let mut random = fixtures::Random(3);
+    let mut random = Random(3);
     let dx = 0.05;
     let mut setup = Setup::<2>::new(dx, one_of_each());
     setup.colliders = vec![Collider {

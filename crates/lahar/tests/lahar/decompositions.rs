@@ -9,9 +9,9 @@
 //!   sample (f64) → round to T → svd, polar in T (scalar | lanes) → errors, in f64, over ε of T
 //! ```
 
-use crate::fixtures::Random;
 use fearless_simd::{Level, Simd, dispatch};
 use lahar::math::{Lanes, Mask, Matrix, Polar, Real, Register, Svd, Vector, polar, svd};
+use lahar_lab::method::random::Random;
 use std::hint::black_box;
 
 /// The number of matrices of each kind, over all dimensions and precisions.
@@ -290,15 +290,26 @@ fn worst_of<S: Simd, const D: usize>(
 }
 
 /// Random numbers and matrices for the samples.
-impl Random {
+trait Samples {
     /// A number from 0 to `n` − 1.
+    fn below(&mut self, n: usize) -> usize;
+    fn sign(&mut self) -> f64;
+    /// Ten to the power of a number in `low .. high`.
+    fn decades(&mut self, low: f64, high: f64) -> f64;
+    fn normal(&mut self) -> f64;
+    fn normal_matrix<const D: usize>(&mut self) -> Matrix<f64, D>;
+    fn rotation<const D: usize>(&mut self) -> Matrix<f64, D>;
+    /// A permutation of 0, 1, .., D − 1.
+    fn order<const D: usize>(&mut self) -> [usize; D];
+}
+
+impl Samples for Random {
     fn below(&mut self, n: usize) -> usize {
         (self.bits() >> 33) as usize % n
     }
     fn sign(&mut self) -> f64 {
         if self.bits() >> 63 == 0 { 1.0 } else { -1.0 }
     }
-    /// Ten to the power of a number in `low .. high`.
     fn decades(&mut self, low: f64, high: f64) -> f64 {
         10f64.powf(self.between(low, high))
     }
@@ -309,7 +320,7 @@ impl Random {
     fn normal_matrix<const D: usize>(&mut self) -> Matrix<f64, D> {
         Matrix::from_fn(|_, _| self.normal())
     }
-    fn rotation_by_quaternion<const D: usize>(&mut self) -> Matrix<f64, D> {
+    fn rotation<const D: usize>(&mut self) -> Matrix<f64, D> {
         let mut q: [f64; 4] = std::array::from_fn(|_| self.between(-1.0, 1.0));
         if D == 2 {
             (q[1], q[2]) = (0.0, 0.0);
@@ -335,7 +346,6 @@ impl Random {
         ];
         Matrix::from_fn(|i, j| rows[i][j])
     }
-    /// A permutation of 0, 1, .., D − 1.
     fn order<const D: usize>(&mut self) -> [usize; D] {
         let mut order = std::array::from_fn(|i| i);
         for i in (1..D).rev() {
@@ -380,11 +390,7 @@ impl<const D: usize> Sample<D> {
                 if matches!(kind, Kind::Reflected) {
                     values[random.below(D)] *= -1.0;
                 }
-                Self::of(
-                    random.rotation_by_quaternion(),
-                    values,
-                    random.rotation_by_quaternion(),
-                )
+                Self::of(random.rotation(), values, random.rotation())
             }
             Kind::Repeated => {
                 let value = random.decades(-1.0, 1.0);
@@ -399,11 +405,7 @@ impl<const D: usize> Sample<D> {
                 if random.below(4) == 0 {
                     values[random.below(D)] = random.decades(-T::DIGITS, 0.0);
                 }
-                Self::of(
-                    random.rotation_by_quaternion(),
-                    values,
-                    random.rotation_by_quaternion(),
-                )
+                Self::of(random.rotation(), values, random.rotation())
             }
             Kind::Singular => match random.below(4) {
                 0 => Self::unknown(Matrix::from_fn(|_, _| random.below(5) as f64 - 2.0)),
@@ -413,11 +415,7 @@ impl<const D: usize> Sample<D> {
                     values[random.below(D)] = random.between(0.0, 1.0);
                     values[random.below(D)] = random.between(-1.0, 1.0);
                     values[random.below(D)] = 0.0;
-                    Self::of(
-                        random.rotation_by_quaternion(),
-                        values,
-                        random.rotation_by_quaternion(),
-                    )
+                    Self::of(random.rotation(), values, random.rotation())
                 }
                 // A random matrix with a column or a row of zeros.
                 _ => {
@@ -434,11 +432,7 @@ impl<const D: usize> Sample<D> {
                 let mut values = [random.decades(-2.0, 2.0); D];
                 values[random.below(D)] *= random.sign();
                 if random.below(2) == 0 {
-                    Self::of(
-                        random.rotation_by_quaternion(),
-                        values,
-                        random.rotation_by_quaternion(),
-                    )
+                    Self::of(random.rotation(), values, random.rotation())
                 } else {
                     let order = random.order::<D>();
                     Self::unknown(Matrix::from_fn(|i, j| {

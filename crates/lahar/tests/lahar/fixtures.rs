@@ -9,40 +9,7 @@ use lahar::{
     Collider, Contact, Corners, Cushion, Domain, Keyframe, Material, Model, Motion, ParticleBatch,
     Setup, Sides, Simulate, Simulation, Solid, TimeStep, WallStyle,
 };
-
-/// A generator of pseudo-random numbers, the same on every machine: SplitMix64 (Steele, Lea & Flood 2014).
-pub(crate) struct Random(pub(crate) u64);
-
-impl Random {
-    /// The next 64 bits.
-    pub(crate) fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// A number in `low .. high`.
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
-    }
-
-    /// A number in −1 .. 1.
-    pub(crate) fn signed(&mut self) -> f64 {
-        self.between(-1.0, 1.0)
-    }
-
-    /// A vector of numbers in −1 .. 1.
-    pub(crate) fn vector<const D: usize>(&mut self) -> [f64; D] {
-        core::array::from_fn(|_| self.signed())
-    }
-
-    /// `D` rows of `D` numbers in −`size` .. `size`.
-    pub(crate) fn rows<const D: usize>(&mut self, size: f64) -> [[f64; D]; D] {
-        core::array::from_fn(|_| self.vector().map(|x| x * size))
-    }
-}
+use lahar_lab::method::random::Random;
 
 /// One material of each model, so soft that waves and particles have similar speeds.
 pub(crate) fn one_of_each() -> Vec<Material> {

@@ -1,12 +1,12 @@
 //! Forces besides gravity and stress: against formulas, against the oracle, and by their bits.
 
-use crate::engine::{Engine, Fast, Oracle, State};
 use crate::fixtures::{self, brawl};
 use lahar::material::Dust;
 use lahar::{
     AccelerationField, Force, Instance, Material, Model, ParticleBatch, Pull, Setup, Simulate,
     Simulation, TimeStep, Transfer,
 };
+use lahar_lab::method::engine::{Build, Engine, Fast, Oracle, ParticleState};
 use std::sync::Arc;
 
 /// The acceleration −k (x − X), where X is the particle's starting position plus an offset, or the origin for all.
@@ -82,15 +82,15 @@ fn grain<const D: usize>(
 
 /// Returns the largest distance along an axis between an engine's only particle and the course that `expected` gives
 /// substep by substep, over `steps` substeps \[m\].
-fn off_course<E: Engine<D>, const D: usize>(
+fn off_course<E: Build<D>, const D: usize>(
     (setup, batch): (Setup<D>, ParticleBatch<D>),
     steps: u32,
     mut expected: impl FnMut() -> [f64; D],
 ) -> f64 {
-    let mut engine = E::new(&setup, &[batch]);
+    let mut engine = E::build(&setup, &[batch]).expect("a good setup");
     let mut worst = 0.0_f64;
     for _ in 0..steps {
-        engine.substep();
+        engine.substep().expect("a substep");
         let x = engine.particles()[0].position;
         let wanted = expected();
         for axis in 0..D {
@@ -104,7 +104,7 @@ const TRANSFERS: [Transfer; 3] = [Transfer::Pic, Transfer::Flip { blend: 1.0 }, 
 
 /// Checks that a single grain in a field linear in x moves as symplectic Euler has it, v += Δt a(x), x += Δt v, in every
 /// transfer scheme: the weights reproduce linear functions exactly.
-fn grains_follow_linear_fields<E: Engine<D>, const D: usize>(tolerance: f64) {
+fn grains_follow_linear_fields<E: Build<D>, const D: usize>(tolerance: f64) {
     let start: [f64; D] = core::array::from_fn(|axis| 0.33 - 0.21 * axis as f64);
     let velocity: [f64; D] = core::array::from_fn(|axis| 0.4 + 0.3 * axis as f64);
     let k = 30.0;
@@ -224,14 +224,14 @@ where
     ] {
         setup.transfer = transfer;
         let (mut fast, mut oracle) = (
-            Fast::<f64, D>::new(&setup, &batches),
-            Oracle::<D>::new(&setup, &batches),
+            Fast::<f64, D>::build(&setup, &batches).expect("a good setup"),
+            Oracle::<D>::build(&setup, &batches).expect("a good setup"),
         );
         for _ in 0..steps {
-            fast.substep();
-            oracle.substep();
+            fast.substep().expect("a substep");
+            oracle.substep().expect("a substep");
         }
-        let largest = |of: &dyn Fn(&State<D>, &State<D>) -> f64| {
+        let largest = |of: &dyn Fn(&ParticleState<D>, &ParticleState<D>) -> f64| {
             let pairs = fast.particles().into_iter().zip(oracle.particles());
             pairs.map(|(a, b)| of(&a, &b)).fold(0.0, f64::max)
         };

@@ -1,12 +1,12 @@
 //! Probes read the right values when they are due, and do not change the simulation.
 
-use crate::fixtures::Random;
 use lahar::material::Fluid;
 use lahar::particles::Field;
 use lahar::{
     Contact, Deformation, Domain, Gauge, Instance, Material, Model, ParticleBatch, Plate, Probe,
     Setup, Sides, Simulate, Simulation, TimeStep, WallStyle,
 };
+use lahar_lab::method::random::Random;
 
 const DENSITY: f64 = 1000.0; // kg/m³
 const SOUND_SPEED: f64 = 50.0; // m/s
