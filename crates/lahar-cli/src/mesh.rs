@@ -74,14 +74,12 @@ fn materials(recording: &Recording, chosen: &[String]) -> Result<Vec<(u32, Strin
 
 fn formats(names: &[String]) -> Result<Vec<MeshFormat>, CliError> {
     let format = |name: &String| {
-        (MeshFormat::ALL.into_iter())
-            .find(|format| [format.name(), format.ending()].contains(&name.as_str()))
-            .ok_or_else(|| {
-                let names = MeshFormat::ALL.map(MeshFormat::name).join(", ");
-                CliError::Usage(format!(
-                    "there is no format of meshes \"{name}\"; there are {names}"
-                ))
-            })
+        MeshFormat::named(name).ok_or_else(|| {
+            let names = MeshFormat::ALL.map(MeshFormat::name).join(", ");
+            CliError::Usage(format!(
+                "there is no format of meshes \"{name}\"; there are {names}"
+            ))
+        })
     };
     names.iter().map(format).collect()
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use lahar::{Field, Isa, particles};
 use lahar_io::checkpoint::Start;
-use lahar_io::export::{FORMATS, Format};
+use lahar_io::export::Format;
 use lahar_io::image::{self, Scenery};
 use lahar_io::output::{FilmPlan, PicturePlan, RunFolder, film_pace};
 use lahar_scene::scene::Scene;
@@ -68,7 +68,10 @@ impl Formats {
                 ("gif", _) => formats.gif = true,
                 ("none", _) => {}
                 _ => {
-                    let particles: Vec<_> = FORMATS.iter().map(|info| info.name).collect();
+                    let particles: Vec<_> = Format::ALL
+                        .iter()
+                        .map(|format| format.info().name)
+                        .collect();
                     return Err(format!(
                         "there is no format \"{name}\"; there are {}, png, gif and none",
                         particles.join(", ")
@@ -76,7 +79,7 @@ impl Formats {
                 }
             }
         }
-        let order = |format: &Format| FORMATS.iter().position(|info| info.format == *format);
+        let order = |format: &Format| Format::ALL.iter().position(|other| other == format);
         formats.particles.sort_by_key(order);
         formats.particles.dedup();
         Ok(formats)
@@ -236,8 +239,8 @@ impl RunPlan {
         let pictures = self.outputs.formats.png > 0 || self.outputs.formats.gif;
         let wanted = |field: Field| {
             let in_files = !particles.is_empty() && chosen.contains(&field);
-            let placed =
-                field == Field::Position && particles.iter().any(|format| format.needs_positions());
+            let placed = field == Field::Position
+                && particles.iter().any(|format| format.info().needs_positions);
             let drawn = pictures && image::FIELDS.contains(&field);
             in_files || placed || drawn
         };

@@ -11,6 +11,7 @@ use std::io::{self, Write};
 use lahar::particles::{FIELDS, Shape};
 use lahar::{Data, Field, Snapshot};
 
+use super::FormatInfo;
 use super::rows::{AsBytes, Column, Component, in_space, write_rows};
 
 const BIG_ENDIAN: AsBytes = AsBytes {
@@ -26,6 +27,12 @@ const VECTOR: i32 = 5;
 
 /// What a file ends with: no further blocks.
 const END: [u8; 2] = [0x00, 0xff];
+
+pub(super) const INFO: FormatInfo = FormatInfo {
+    name: "bgeo",
+    ending: "bgeo",
+    needs_positions: true,
+};
 
 pub(super) fn write<W: Write>(mut writer: W, snapshot: &Snapshot) -> io::Result<W> {
     let positions = super::positions(snapshot)?;

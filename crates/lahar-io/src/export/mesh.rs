@@ -1,15 +1,15 @@
-//! Triangle meshes as files: single precision, since programs that draw have no more.
+//! Files of triangle meshes, in single precision: programs that draw use no more.
 
 use std::io::{self, Write};
 
 use super::vtp;
 
-/// Triangles as files take them: places \[m\] and indices, counter-clockwise seen from outside.
+/// Triangles over common vertices, counterclockwise seen from outside.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangles<'a> {
-    /// Places \[m\].
+    /// Positions \[m\], one per vertex.
     pub vertices: &'a [[f64; 3]],
-    /// Indices of vertices.
+    /// Three indices of vertices per triangle.
     pub triangles: &'a [[u32; 3]],
 }
 
@@ -18,7 +18,7 @@ pub struct Triangles<'a> {
 pub enum MeshFormat {
     /// Stanford's polygon format, little-endian.
     Ply,
-    /// Wavefront's text.
+    /// Wavefront's text format.
     Obj,
     /// VTK's XML PolyData.
     Vtk,
@@ -28,25 +28,31 @@ impl MeshFormat {
     /// Every format of meshes.
     pub const ALL: [Self; 3] = [Self::Ply, Self::Obj, Self::Vtk];
 
-    /// Its name.
+    /// Returns the name of this format in `--format`, and the ending of its files.
+    const fn words(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Ply => ("ply", "ply"),
+            Self::Obj => ("obj", "obj"),
+            Self::Vtk => ("vtk", "vtp"),
+        }
+    }
+
+    /// Returns the name of this format in `--format`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Ply => "ply",
-            Self::Obj => "obj",
-            Self::Vtk => "vtk",
-        }
+        self.words().0
     }
 
-    /// How its files end, without the dot.
+    /// Returns the ending of its files, without the dot.
     pub fn ending(self) -> &'static str {
-        match self {
-            Self::Ply => "ply",
-            Self::Obj => "obj",
-            Self::Vtk => "vtp",
-        }
+        self.words().1
     }
 
-    /// Writes a mesh of a moment \[s\] and gives the writer back, flushed.
+    /// Returns the format with this name or with this ending of files.
+    pub fn named(name: &str) -> Option<Self> {
+        (Self::ALL.into_iter()).find(|format| [format.name(), format.ending()].contains(&name))
+    }
+
+    /// Writes a mesh of the time `time` \[s\]. Returns the writer, flushed.
     ///
     /// # Errors
     /// If writing fails.
@@ -86,7 +92,7 @@ fn obj(writer: &mut impl Write, mesh: Triangles<'_>, time: f64) -> io::Result<()
         writeln!(writer, "v {} {} {}", *x as f32, *y as f32, *z as f32)?;
     }
     for [a, b, c] in mesh.triangles {
-        // Counted from 1, in u64 so that the last one has a successor.
+        // Indices count from 1; in u64, so that the last u32 has a successor.
         let [a, b, c] = [a, b, c].map(|i| u64::from(*i) + 1);
         writeln!(writer, "f {a} {b} {c}")?;
     }

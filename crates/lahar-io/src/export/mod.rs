@@ -1,16 +1,34 @@
-//! Particles of a moment as files that other programs open: one table of formats, a file each.
+//! Files of particles that other programs open. A format is one file of this folder and one line in the table below.
 //!
 //! ```text
 //! Snapshot ──▶ .npz   NumPy's arrays: everything, as it is in memory
-//!              .vtp   VTK's PolyData: 3D vectors and tensors, a .pvd lists them by time
-//!              .ply   vertices with a property a number
-//!              .bgeo  Houdini's classic geometry: single precision
+//!              .vtp   VTK's PolyData: 3D vectors and tensors; a .pvd lists the files by time
+//!              .ply   vertices with one property per number
+//!              .bgeo  Houdini's classic geometry, in single precision
 //! ```
-//! What 2D lacks is filled up where a format knows 3D only: coordinates and velocities by 0, the deformation gradient
-//! by 1 on the diagonal.
+//! Formats that know 3D only get 2D snapshots filled up: coordinates and velocities with 0, the deformation gradient
+//! with 1 on the diagonal.
+//!
+//! ```
+//! use std::io::Cursor;
+//!
+//! use lahar::{Data, Field, Snapshot};
+//! use lahar_io::export::Format;
+//!
+//! let snapshot = Snapshot {
+//!     time: 0.5,
+//!     dimension: 2,
+//!     count: 1,
+//!     columns: vec![(Field::Position, Data::F64(vec![0.1, 0.2]))],
+//! };
+//! let file = Format::named("ply").unwrap().write(Cursor::new(Vec::new()), &snapshot)?;
+//! assert!(file.into_inner().starts_with(b"ply\n"));
+//! # Ok::<(), std::io::Error>(())
+//! ```
 
 mod bgeo;
 mod mesh;
+mod npz;
 mod ply;
 mod rows;
 mod series;
@@ -19,109 +37,91 @@ mod vtp;
 use serde::{Deserialize, Serialize};
 use std::io::{self, Seek, Write};
 
-use lahar::particles::{FIELDS, Shape};
 use lahar::{Data, Field, Snapshot};
-
-use lahar_scene::npz::{Compression, NpzWriter};
 
 pub use mesh::{MeshFormat, Triangles};
 pub(crate) use series::TimeSeries;
 
-/// A format of particles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Format {
-    /// NumPy's archive of arrays.
-    Npz,
-    /// VTK's XML PolyData.
-    Vtk,
-    /// Stanford's polygon format.
-    Ply,
-    /// Houdini's classic geometry.
-    Bgeo,
-}
-
-/// One line of the table of formats.
-#[derive(Clone, Copy, Debug)]
+/// The words and needs of a format of particles; each file of this folder declares its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FormatInfo {
-    /// Which format.
-    pub format: Format,
-    /// Its name in `--format` and `output.formats`.
+    /// Name in `--format` and `output.formats`.
     pub name: &'static str,
-    /// How its files end, without the dot.
+    /// Ending of its files, without the dot.
     pub ending: &'static str,
+    /// True if its files consist of points, and so need [`Field::Position`].
+    pub needs_positions: bool,
 }
 
-/// Every format of particles.
-pub const FORMATS: &[FormatInfo] = &[
-    line(Format::Npz, "npz", "npz"),
-    line(Format::Vtk, "vtk", "vtp"),
-    line(Format::Ply, "ply", "ply"),
-    line(Format::Bgeo, "bgeo", "bgeo"),
-];
+/// Declares the formats: variant, documentation, and the file of this folder that writes it.
+macro_rules! formats {
+    ($($(#[$documentation:meta])* $variant:ident = $file:ident,)*) => {
+        /// A format of particles.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[serde(try_from = "String", into = "&'static str")]
+        pub enum Format {
+            $($(#[$documentation])* $variant,)*
+        }
 
-const fn line(format: Format, name: &'static str, ending: &'static str) -> FormatInfo {
-    FormatInfo {
-        format,
-        name,
-        ending,
-    }
+        impl Format {
+            /// Every format, in the order of the table.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// Returns the words and needs of this format.
+            pub fn info(self) -> FormatInfo {
+                match self {
+                    $(Self::$variant => $file::INFO,)*
+                }
+            }
+
+            /// Writes the fields that `snapshot` has, in the order of [`FIELDS`](lahar::particles::FIELDS), and its time
+            /// \[s\]. Returns the writer, flushed.
+            ///
+            /// # Errors
+            /// If writing fails, or the format needs positions and the snapshot has none.
+            pub fn write<W: Write + Seek>(self, writer: W, snapshot: &Snapshot) -> io::Result<W> {
+                match self {
+                    $(Self::$variant => $file::write(writer, snapshot),)*
+                }
+            }
+        }
+    };
+}
+
+formats! {
+    /// NumPy's archive of arrays.
+    Npz = npz,
+    /// VTK's XML PolyData.
+    Vtk = vtp,
+    /// Stanford's polygon format.
+    Ply = ply,
+    /// Houdini's classic geometry.
+    Bgeo = bgeo,
 }
 
 impl Format {
-    /// Its line in [`FORMATS`].
-    pub fn info(self) -> &'static FormatInfo {
-        FORMATS
-            .iter()
-            .find(|info| info.format == self)
-            .expect("every format is in the table")
-    }
-
-    /// The format of that name, or of files that end so.
+    /// Returns the format with this name or with this ending of files.
     pub fn named(name: &str) -> Option<Self> {
-        FORMATS
-            .iter()
-            .find(|info| info.name == name || info.ending == name)
-            .map(|info| info.format)
-    }
-
-    /// Whether its files are of points, and so cannot do without [`Field::Position`].
-    pub fn needs_positions(self) -> bool {
-        self != Self::Npz
-    }
-
-    /// Writes what fields `snapshot` has, in the order of [`FIELDS`], and `time` \[s\]; gives the writer back, flushed.
-    ///
-    /// # Errors
-    /// If writing fails, or the format needs positions and there are none.
-    pub fn write<W: Write + Seek>(self, writer: W, snapshot: &Snapshot) -> io::Result<W> {
-        match self {
-            Self::Npz => npz(writer, snapshot),
-            Self::Vtk => vtp::write(writer, snapshot),
-            Self::Ply => ply::write(writer, snapshot),
-            Self::Bgeo => bgeo::write(writer, snapshot),
-        }
+        let is_named = |format: &Self| [format.info().name, format.info().ending].contains(&name);
+        Self::ALL.iter().copied().find(is_named)
     }
 }
 
-fn npz<W: Write + Seek>(writer: W, snapshot: &Snapshot) -> io::Result<W> {
-    let (n, d) = (snapshot.count, snapshot.dimension);
-    let mut npz = NpzWriter::new(writer, Compression::Stored);
-    for info in FIELDS {
-        if let Some(data) = snapshot.get(info.field) {
-            let shape: &[usize] = match info.shape {
-                Shape::Scalar => &[n],
-                Shape::Vector => &[n, d],
-                Shape::Matrix => &[n, d, d],
-            };
-            npz.add(info.name, shape, data)?;
-        }
+impl TryFrom<String> for Format {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<Self, String> {
+        Self::named(&name).ok_or_else(|| format!("there is no format \"{name}\""))
     }
-    npz.add("time", &[], &Data::F64(vec![snapshot.time]))?;
-    npz.finish()
 }
 
-/// The positions, which formats of points cannot do without.
+impl From<Format> for &'static str {
+    fn from(format: Format) -> Self {
+        format.info().name
+    }
+}
+
+/// Returns the positions, which formats of points need.
 fn positions(snapshot: &Snapshot) -> io::Result<&Data> {
     snapshot.get(Field::Position).ok_or_else(|| {
         io::Error::new(
@@ -137,12 +137,16 @@ mod tests {
 
     #[test]
     fn formats_are_found_by_name_and_by_ending() {
-        for info in FORMATS {
-            assert_eq!(Format::named(info.name), Some(info.format));
-            assert_eq!(Format::named(info.ending), Some(info.format));
-            assert_eq!(info.format.info().name, info.name);
+        for &format in Format::ALL {
+            let info = format.info();
+            assert_eq!(Format::named(info.name), Some(format));
+            assert_eq!(Format::named(info.ending), Some(format));
+            let word = serde_json::to_string(&format).unwrap();
+            assert_eq!(word, format!("\"{}\"", info.name));
+            assert_eq!(serde_json::from_str::<Format>(&word).unwrap(), format);
         }
         assert_eq!(Format::named("gif"), None);
+        assert!(serde_json::from_str::<Format>("\"gif\"").is_err());
     }
 
     #[test]
@@ -153,12 +157,11 @@ mod tests {
             count: 1,
             columns: vec![(Field::Mass, Data::F32(vec![1.0]))],
         };
-        for info in FORMATS {
-            let written = info
-                .format
+        for format in Format::ALL {
+            let written = format
                 .write(io::Cursor::new(Vec::new()), &snapshot)
                 .map(drop);
-            assert_eq!(written.is_err(), info.format.needs_positions());
+            assert_eq!(written.is_err(), format.info().needs_positions);
         }
     }
 }

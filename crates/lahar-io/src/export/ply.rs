@@ -6,7 +6,14 @@ use std::io::{self, Write};
 use lahar::particles::{FIELDS, Shape};
 use lahar::{Data, Field, Snapshot};
 
+use super::FormatInfo;
 use super::rows::{Column, LITTLE_ENDIAN, as_is, in_space, write_rows};
+
+pub(super) const INFO: FormatInfo = FormatInfo {
+    name: "ply",
+    ending: "ply",
+    needs_positions: true,
+};
 
 pub(super) fn write<W: Write>(mut writer: W, snapshot: &Snapshot) -> io::Result<W> {
     super::positions(snapshot)?;

@@ -9,8 +9,15 @@ use std::io::{self, Write};
 use lahar::particles::FIELDS;
 use lahar::{Data, Field, Snapshot};
 
+use super::FormatInfo;
 use super::mesh::Triangles;
 use super::rows::{Column, LITTLE_ENDIAN, in_space, write_rows};
+
+pub(super) const INFO: FormatInfo = FormatInfo {
+    name: "vtk",
+    ending: "vtp",
+    needs_positions: true,
+};
 
 pub(super) fn write<W: Write>(mut writer: W, snapshot: &Snapshot) -> io::Result<W> {
     let positions = super::positions(snapshot)?;

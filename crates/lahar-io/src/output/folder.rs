@@ -8,7 +8,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use crate::checkpoint::Start;
-use crate::export::{FORMATS, MeshFormat};
+use crate::export::{Format, MeshFormat};
 use crate::files::{
     Lock, OutputError, PARTIAL, confined, file_name, is_link, make_folder, remove_file,
 };
@@ -41,7 +41,7 @@ struct OwnFolder {
 /// last and on its own: until then the folder is still a run, which can be replaced again.
 const OWN_FOLDERS: [OwnFolder; 8] = [
     own("frames", |name| {
-        FORMATS.iter().any(|info| is_frame(name, info.ending))
+        (Format::ALL.iter()).any(|format| is_frame(name, format.info().ending))
     }),
     own("images", |name| is_frame(name, "png")),
     own("render", |name| {
