@@ -5,8 +5,10 @@
 
 use std::ops::Range;
 
+use super::drawable::DrawableParticles;
 use super::palette::{self, ToScreen};
-use super::{DrawableParticles, Picture, Scenery, Solid, Style};
+use super::renderer::{Solid, Style};
+use super::{Picture, Scenery};
 
 /// Reach h of a bump, in sizes of a particle: gaps between neighbors up to two and a half sizes wide are filled.
 pub(super) const REACH: f32 = 2.0;

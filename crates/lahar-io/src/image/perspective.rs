@@ -8,8 +8,10 @@
 use core::f32::consts::TAU;
 
 use super::camera::{self, Camera, add_scaled, cross, dot, sub, unit};
+use super::drawable::DrawableParticles;
 use super::palette::{self, ToScreen};
-use super::{DrawableParticles, Picture, Scenery, Solid, Style};
+use super::renderer::{Solid, Style};
+use super::{Picture, Scenery};
 
 /// Radius of a ball, in sizes of a particle.
 const RADIUS: f32 = 0.9;
