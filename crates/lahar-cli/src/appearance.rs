@@ -1,19 +1,19 @@
-//! How a scene wants to be drawn: its camera and colours, for pictures made by the processor.
+//! The camera and the colors that a scene asks for, for pictures drawn on the processor.
 
 use lahar_io::image::{Camera, Coloring, Renderer, Scenery, Style};
 use lahar_scene::scene::Scene;
 
-/// Width of a film \[pixels\]: a film of all frames is to stay a few megabytes.
+/// The largest width of a film \[pixels\], which keeps a film of all frames at a few megabytes.
 const FILM_WIDTH: u32 = 640;
 
-/// The size of a film of pictures of this size \[pixels\].
+/// Returns the size of a film for pictures of this size \[pixels\].
 pub(crate) fn film_size([width, height]: [u32; 2]) -> [u32; 2] {
     let film_width = width.min(FILM_WIDTH);
     let film_height = f64::from(height) * f64::from(film_width) / f64::from(width);
     [film_width, film_height.round() as u32]
 }
 
-/// What colours mean in pictures of `scene`.
+/// Returns the quantity that colors show in pictures of `scene`, with its range.
 pub(crate) fn coloring(scene: &Scene, scenery: &Scenery) -> Coloring {
     match scene.camera.color_by.as_str() {
         "body" => Coloring::Body,
@@ -34,7 +34,7 @@ pub(crate) fn coloring(scene: &Scene, scenery: &Scenery) -> Coloring {
     }
 }
 
-/// Draws `scene` in pictures of this size \[pixels\].
+/// Returns a renderer for pictures of `scene` in this size \[pixels\].
 pub(crate) fn renderer(scene: &Scene, scenery: &Scenery, [width, height]: [u32; 2]) -> Renderer {
     let camera = &scene.camera;
     let style = Style {
@@ -45,8 +45,8 @@ pub(crate) fn renderer(scene: &Scene, scenery: &Scenery, [width, height]: [u32; 
     };
     let mut scenery = scenery.clone();
     scenery.background = camera.background;
-    for (colour, material) in scenery.colors.iter_mut().zip(&scene.materials) {
-        *colour = material.color.unwrap_or(*colour);
+    for (color, material) in scenery.colors.iter_mut().zip(&scene.materials) {
+        *color = material.color.unwrap_or(*color);
     }
     scenery.bodies = scene.bodies.iter().map(|body| body.color).collect();
     let mut renderer = Renderer::new(scenery.clone(), style);
@@ -77,7 +77,7 @@ pub(crate) fn renderer(scene: &Scene, scenery: &Scenery, [width, height]: [u32; 
     ))
 }
 
-/// What a column of half the scene's height weighs on its foot \[Pa\].
+/// The pressure at the foot of a column of half the scene's height \[Pa\].
 fn pressure_scale(scene: &Scene, scenery: &Scenery) -> f64 {
     let density = scene
         .materials
@@ -87,7 +87,7 @@ fn pressure_scale(scene: &Scene, scenery: &Scenery) -> f64 {
     (density * scenery.speed * scenery.speed * 0.5).max(f64::MIN_POSITIVE)
 }
 
-/// By how much of its volume such a column compresses its foot, in the softest material.
+/// The relative compression at the foot of such a column, in the softest material.
 fn squeeze(scene: &Scene, scenery: &Scenery) -> f64 {
     let softest = (scene.materials.iter())
         .map(|material| material.wave_speed)

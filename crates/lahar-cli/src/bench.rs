@@ -1,4 +1,4 @@
-//! `lahar bench`: how fast scenes are computed, as a table, beside a baseline, and as plots of growth.
+//! `lahar bench`: measures the speed of scenes, prints it as a table or as ratios to a baseline, and plots growth.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,16 +10,15 @@ use lahar_lab::bench::{self, BenchError, BenchReport, Case, Machine, Options};
 use serde_json::json;
 
 use crate::error::CliError;
-use crate::{args, terminal};
+use crate::{args, terminal, threads};
 use lahar_lab::numbers::with_prefix;
 
-/// Measures the cases that are asked for.
+/// Measures the cases of `args`.
 pub(crate) fn bench(args: &args::Bench) -> Result<ExitCode, CliError> {
     let cases = wanted(args)?;
     let baseline = args.compare.as_deref().map(read).transpose()?;
-    let all = std::thread::available_parallelism().map_or(1, usize::from);
     let threads: Vec<usize> = match &args.threads[..] {
-        [] => vec![all],
+        [] => vec![threads::count(None)],
         given => given.iter().copied().map(usize::from).collect(),
     };
     let particles: Vec<Option<f64>> = match &args.growth {
@@ -64,10 +63,7 @@ pub(crate) fn bench(args: &args::Bench) -> Result<ExitCode, CliError> {
 }
 
 fn measure(case: &Case, options: &Options, threads: usize) -> Result<bench::Measurement, CliError> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool
-        .map_err(|error| CliError::Machine(format!("cannot start {threads} threads: {error}")))?;
-    let measured = pool
+    let measured = threads::pool(threads)?
         .install(|| bench::measure(case, options))
         .map_err(|error| match error {
             BenchError::Scene(error) => CliError::Scene(error),
@@ -85,7 +81,7 @@ fn measure(case: &Case, options: &Options, threads: usize) -> Result<bench::Meas
     Ok(measured)
 }
 
-/// The cases of the words on the command line.
+/// The cases that the options name, or their default.
 fn wanted(args: &args::Bench) -> Result<Vec<&'static Case>, CliError> {
     if args.cases.is_empty() {
         let many = if args.growth.is_some() {
@@ -107,15 +103,12 @@ fn wanted(args: &args::Bench) -> Result<Vec<&'static Case>, CliError> {
     args.cases.iter().map(find).collect()
 }
 
-/// A baseline.
+/// Reads a baseline from a file.
 fn read(path: &Path) -> Result<BenchReport, CliError> {
     let wrong = |what: String| CliError::Usage(format!("{}: {what}", path.display()));
     let text = fs::read_to_string(path).map_err(|error| wrong(format!("cannot read: {error}")))?;
-    serde_json::from_str(&text).map_err(|error| {
-        wrong(format!(
-            "it is not what `lahar bench --json` prints: {error}"
-        ))
-    })
+    serde_json::from_str(&text)
+        .map_err(|error| wrong(format!("not a result of `lahar bench --json`: {error}")))
 }
 
 /// Draws the plots into `folder`; returns their paths.

@@ -1,11 +1,11 @@
-//! Seconds since the program's start. The engine has no clock of its own; it is given this one.
+//! The clock: seconds since the program's start. The engine has no clock of its own and is given this one.
 
 use std::sync::LazyLock;
 use std::time::Instant;
 
 static START: LazyLock<Instant> = LazyLock::new(Instant::now);
 
-/// Sets the clock going: the first thing that the program does.
+/// Starts the clock. The program calls this first.
 pub(crate) fn start() {
     LazyLock::force(&START);
 }

@@ -1,7 +1,7 @@
-//! `lahar run --compare KEY=A,B`: a scene once for each value, and what became of them side by side.
+//! `lahar run --compare KEY=A,B`: runs a scene once per value, and puts the results side by side.
 //!
 //! ```text
-//! DIR/A/, DIR/B/          a run each
+//! DIR/A/, DIR/B/          one run per value
 //! DIR/images/000000.png   their pictures, side by side
 //! DIR/video.gif           and as a film
 //! DIR/plots/energy.svg    their diagnostics in the same plots
@@ -22,7 +22,7 @@ use crate::error::CliError;
 use crate::run_plan::RunPlan;
 use crate::{args, run, terminal};
 
-/// How wide each of the pictures is, unless the scene is told otherwise \[pixels\].
+/// The width of each picture, unless an option sets it \[pixels\].
 const WIDTH: u32 = 420;
 
 /// Runs the scene of `args` with each value of `comparison`.
@@ -33,7 +33,7 @@ pub(crate) fn compare(args: &args::Run, comparison: &Comparison) -> Result<ExitC
     let mut base = vec![("output.picture_size".to_owned(), size)];
     base.extend(args.scene.set.iter().cloned());
 
-    // All are checked before the first is run.
+    // All values are checked before the first run begins.
     let mut plans = Vec::new();
     for set in comparison.overrides(&base) {
         let mut args = args.clone();
@@ -75,7 +75,7 @@ pub(crate) fn compare(args: &args::Run, comparison: &Comparison) -> Result<ExitC
     Ok(ExitCode::SUCCESS)
 }
 
-/// Puts the pictures that all `runs` have side by side, as PNG and as a film of `rate` a second; how many there are.
+/// Puts the pictures that all `runs` have side by side, as PNG files and as a film of `rate` \[1/s\]. Returns their number.
 fn pictures_beside(
     runs: &[(String, PathBuf)],
     folder: &Path,
@@ -108,7 +108,7 @@ fn pictures_beside(
         let path = images.join(name);
         let Some(whole) = side_by_side(&titled) else {
             return Err(CliError::Usage(
-                "the pictures have different sizes: a value of output.picture_size is nothing to compare".into(),
+                "values of output.picture_size cannot be compared: the pictures have different sizes".into(),
             ));
         };
         whole
@@ -121,7 +121,8 @@ fn pictures_beside(
     Ok(names.len())
 }
 
-/// A value as the name of a folder: letters, digits, points, dashes; anything else is an underscore.
+/// Turns a value into the name of a folder: letters, digits, points and dashes stay, and other characters become
+/// underscores.
 fn file_name(value: &str) -> String {
     let plain = |c: char| {
         if c.is_ascii_alphanumeric() || ".-+".contains(c) {

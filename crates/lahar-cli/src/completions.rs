@@ -1,4 +1,4 @@
-//! `lahar completions SHELL`.
+//! `lahar completions SHELL`: prints a script that completes commands in a shell.
 
 use std::process::ExitCode;
 
@@ -9,6 +9,7 @@ use crate::args::Args;
 use crate::error::CliError;
 use crate::terminal;
 
+/// Prints the script for `shell`.
 pub(crate) fn completions(shell: Shell) -> Result<ExitCode, CliError> {
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut Args::command(), "lahar", &mut text);

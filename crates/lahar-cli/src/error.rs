@@ -1,4 +1,4 @@
-//! What ends a command early, and with which exit code.
+//! The errors that end a command, with their texts and exit codes.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -7,16 +7,16 @@ use lahar_io::output::OutputError;
 use lahar_scene::error::SceneError;
 use serde_json::{Value, json};
 
-use crate::terminal;
+use crate::{shell, terminal};
 
-/// The exit codes: 0 is success.
+/// Exit code: the simulation or the machine failed, or a validation case misses its target.
 pub(crate) const FAILED: u8 = 1;
-/// The command or the scene is wrong.
+/// Exit code: the command or the scene is wrong.
 pub(crate) const USAGE: u8 = 2;
-/// After Ctrl-C.
+/// Exit code: Ctrl-C or SIGTERM stopped the command.
 pub(crate) const INTERRUPTED: u8 = 130;
 
-/// What ends a command early.
+/// An error that ends a command.
 #[derive(Debug)]
 pub(crate) enum CliError {
     /// The scene is wrong.
@@ -25,76 +25,78 @@ pub(crate) enum CliError {
     Usage(String),
     /// A file could not be written, or a folder is taken.
     Output(OutputError),
-    /// The simulation failed; what was written before is there.
+    /// The simulation failed. The frames before the failure are complete.
     Simulation {
-        /// The full description.
-        what: String,
+        /// The description of the failure.
+        message: String,
         /// The folder of the run.
         folder: PathBuf,
-        /// Whole frames in it.
+        /// The number of complete frames in it.
         frames: u64,
         /// The newest checkpoint in it.
         checkpoint: Option<PathBuf>,
     },
-    /// A run could not be written any more.
-    Broken {
-        /// Why.
+    /// A file of a run that was under way could not be written.
+    RunOutput {
+        /// The file and the reason.
         error: OutputError,
         /// The folder of the run.
         folder: PathBuf,
         /// The newest checkpoint in it.
         checkpoint: Option<PathBuf>,
     },
-    /// Something about this machine.
+    /// This machine could not do something: start threads, write a file, open a window.
     Machine(String),
 }
 
 impl CliError {
+    /// The exit code of the program.
     pub(crate) fn exit_code(&self) -> ExitCode {
         ExitCode::from(match self {
             Self::Scene(_) | Self::Usage(_) => USAGE,
             Self::Output(error) if error.usage => USAGE,
-            Self::Output(_) | Self::Simulation { .. } | Self::Broken { .. } | Self::Machine(_) => {
-                FAILED
-            }
+            Self::Output(_)
+            | Self::Simulation { .. }
+            | Self::RunOutput { .. }
+            | Self::Machine(_) => FAILED,
         })
     }
 
-    /// For standard error.
+    /// The text for standard error.
     pub(crate) fn text(&self) -> String {
         match self {
-            Self::Scene(error) => error.render(terminal::colours()).trim_end().to_owned(),
-            Self::Usage(what) | Self::Machine(what) => format!("error: {what}"),
+            Self::Scene(error) => error.render(terminal::shows_colors()).trim_end().to_owned(),
+            Self::Usage(message) | Self::Machine(message) => format!("error: {message}"),
             Self::Output(error) => format!("error: {error}"),
             Self::Simulation {
-                what,
+                message,
                 folder,
                 frames,
                 checkpoint,
             } => format!(
-                "error: the simulation failed: {what}\n{} holds the {frames} frame(s) before that, run.json and diagnostics.csv; {}",
+                "error: the simulation failed: {message}\nthe {frames} frame(s) before that, run.json and diagnostics.csv are in {}; {}",
                 folder.display(),
                 match checkpoint {
                     Some(path) => format!("the last good checkpoint is {}", path.display()),
                     None => "there is no checkpoint".to_owned(),
                 }
             ),
-            Self::Broken {
+            Self::RunOutput {
                 error,
                 folder,
                 checkpoint,
             } => format!(
-                "error: {error}\n{}; when there is room again, `lahar resume {}` goes on",
+                "error: {error}\n{}; once the file can be written, `lahar resume {}` continues",
                 match checkpoint {
                     Some(path) => format!("the last good checkpoint is {}", path.display()),
                     None => "there is no checkpoint yet".to_owned(),
                 },
-                folder.display()
+                shell::quoted_path(folder)
             ),
         }
     }
 
-    /// For standard output, with `--json`.
+    /// The document for standard output with `--json`.
     pub(crate) fn json(&self) -> Value {
         let mut value = json!({ "status": "failed" });
         let extra = match self {
@@ -105,17 +107,17 @@ impl CliError {
                 "column": error.column,
                 "help": error.hint,
             }),
-            Self::Usage(what) | Self::Machine(what) => json!({ "error": what }),
+            Self::Usage(message) | Self::Machine(message) => json!({ "error": message }),
             Self::Output(error) => json!({ "error": error.what, "file": error.path }),
             Self::Simulation {
-                what,
+                message,
                 folder,
                 frames,
                 checkpoint,
             } => {
-                json!({ "error": what, "folder": folder, "frames": frames, "checkpoint": checkpoint })
+                json!({ "error": message, "folder": folder, "frames": frames, "checkpoint": checkpoint })
             }
-            Self::Broken {
+            Self::RunOutput {
                 error,
                 folder,
                 checkpoint,

@@ -7,10 +7,21 @@ use lahar_scene::driver::{Driver, Event, Frame};
 
 use crate::progress::{Progress, Standing};
 use crate::run_plan::RunPlan;
-use crate::summary::End;
+
 use crate::{clock, interrupt};
 
-/// What ends the frames of a run before their time.
+/// Why the frames of a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    /// All frames are written.
+    Done,
+    /// Ctrl-C or SIGTERM came.
+    Interrupted,
+    /// The run's deadline has passed.
+    Deadline,
+}
+
+/// The error that ends the frames of a run.
 pub(crate) enum RunError {
     /// The simulation failed.
     Simulation {

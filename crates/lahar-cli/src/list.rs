@@ -1,4 +1,4 @@
-//! `lahar list`.
+//! `lahar list`: lists the built-in scenes, each line beginning with the name.
 
 use std::process::ExitCode;
 
@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use crate::error::CliError;
 use crate::terminal;
 
+/// Prints the scenes, the default one first.
 pub(crate) fn list(as_json: bool) -> Result<ExitCode, CliError> {
     let scenes = builtin::list();
     if as_json {

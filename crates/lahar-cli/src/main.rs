@@ -1,9 +1,12 @@
-//! The binary `lahar`: commands in, files, pictures and a window out.
+//! The program `lahar`: its command line, and the window's start.
 //!
 //! ```text
-//! words ─► args ─► plan, checked ─► run ─► DIR/ and a report
+//! arguments ─▶ args.rs ─▶ run_plan.rs ─▶ run.rs ─▶ frame_loop.rs ─▶ DIR/
+//!              parsed     checked        folder,    driver and
+//!                                        record     writing thread
 //! ```
-//! Only this crate prints: reports on standard output, everything else on standard error.
+//! Each command has a file of its name. Only this crate prints: results on standard output, everything else on
+//! standard error (terminal.rs). Exit codes are in error.rs.
 
 mod appearance;
 mod args;
@@ -28,9 +31,11 @@ mod resume;
 mod run;
 mod run_plan;
 mod schema;
+mod shell;
 mod show;
 mod summary;
 mod terminal;
+mod threads;
 mod validate;
 mod window;
 
@@ -45,7 +50,7 @@ fn main() -> ExitCode {
     clock::start();
     let args = match Args::try_parse() {
         Ok(args) => args,
-        // Help and the version come this way too, with exit code 0.
+        // Help and version are such errors, too, with exit code 0.
         Err(error) => {
             drop(error.print());
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));

@@ -1,4 +1,4 @@
-//! `lahar mesh`: surfaces around a run's particles, a file a material and frame.
+//! `lahar mesh`: makes surfaces around the particles of a run, one file per material and frame.
 
 use std::process::ExitCode;
 
@@ -7,8 +7,8 @@ use lahar_io::export::MeshFormat;
 use lahar_io::output::{MeshFiles, Recording};
 use lahar_io::surface::{Style, Surface};
 
-use crate::error::{CliError, INTERRUPTED};
-use crate::recorded_frames::{self, End};
+use crate::error::CliError;
+use crate::recorded_frames;
 use crate::{args, terminal};
 
 /// Makes the meshes of `args.recorded.run`.
@@ -16,7 +16,7 @@ pub(crate) fn mesh(args: &args::Mesh) -> Result<ExitCode, CliError> {
     let recording = recorded_frames::open(&args.recorded.run)?;
     if recording.record().dimension != 3 {
         return Err(CliError::Usage(format!(
-            "{} is a run in 2D; surfaces are made of runs in 3D",
+            "{} is a run in 2D; only runs in 3D have surfaces",
             recording.folder().display()
         )));
     }
@@ -32,27 +32,25 @@ pub(crate) fn mesh(args: &args::Mesh) -> Result<ExitCode, CliError> {
     };
     let names: Vec<&str> = materials.iter().map(|(_, name)| name.as_str()).collect();
     let mut files = MeshFiles::create(&folder, &names, &formats)?;
-    let end = recorded_frames::each(&recording, args.recorded.frames, |number, snapshot| {
-        let mut triangles = 0;
-        for (index, name) in &materials {
-            let (positions, volume) = particles(snapshot, *index).map_err(CliError::Usage)?;
-            let surface = Surface::around(&positions, volume, style)
-                .map_err(|error| CliError::Usage(format!("frame {number}, {name}: {error}")))?;
-            triangles += surface.triangles.len();
-            files.write(name, number, snapshot.time, surface.as_triangles())?;
-        }
-        Ok(format!("t = {:.3} s  {triangles} triangles", snapshot.time))
-    })?;
+    let completion =
+        recorded_frames::each(&recording, args.recorded.frames, |number, snapshot| {
+            let mut triangles = 0;
+            for (index, name) in &materials {
+                let (positions, volume) = particles(snapshot, *index).map_err(CliError::Usage)?;
+                let surface = Surface::around(&positions, volume, style)
+                    .map_err(|error| CliError::Usage(format!("frame {number}, {name}: {error}")))?;
+                triangles += surface.triangles.len();
+                files.write(name, number, snapshot.time, surface.as_triangles())?;
+            }
+            Ok(format!("t = {:.3} s  {triangles} triangles", snapshot.time))
+        })?;
     for name in names {
         terminal::print(&format!("  {}/\n", files.folder_of(name).display()));
     }
-    Ok(match end {
-        End::Done => ExitCode::SUCCESS,
-        End::Interrupted => ExitCode::from(INTERRUPTED),
-    })
+    Ok(completion.exit_code())
 }
 
-/// The chosen materials, or all, with their numbers.
+/// Returns the chosen materials, or all without a choice, with their numbers in the scene.
 fn materials(recording: &Recording, chosen: &[String]) -> Result<Vec<(u32, String)>, CliError> {
     let scene = &recording.record().scene;
     let table = scene["materials"].as_object();
@@ -77,14 +75,14 @@ fn formats(names: &[String]) -> Result<Vec<MeshFormat>, CliError> {
         MeshFormat::named(name).ok_or_else(|| {
             let names = MeshFormat::ALL.map(MeshFormat::name).join(", ");
             CliError::Usage(format!(
-                "there is no format of meshes \"{name}\"; there are {names}"
+                "there is no mesh format \"{name}\"; there are {names}"
             ))
         })
     };
     names.iter().map(format).collect()
 }
 
-/// Positions \[m\] of the particles of a material, and the volume \[m³\] that each fills now, on average.
+/// Returns the positions \[m\] of the particles of a material, and the mean of their present volumes \[m³\].
 fn particles(snapshot: &Snapshot, material: u32) -> Result<(Vec<[f64; 3]>, f64), String> {
     let field = |field: Field| {
         snapshot.get(field).map(Data::to_f64).ok_or_else(|| {
@@ -97,17 +95,17 @@ fn particles(snapshot: &Snapshot, material: u32) -> Result<(Vec<[f64; 3]>, f64),
     let (positions, volume0) = (field(Field::Position)?, field(Field::Volume0)?);
     let jacobian = snapshot.get(Field::Jacobian).map(Data::to_f64);
     let materials = field(Field::Material)?;
-    let (mut places, mut volume) = (Vec::new(), 0.0);
-    for (row, own) in materials.iter().enumerate() {
-        if *own == f64::from(material) {
-            places.push([0, 1, 2].map(|axis| positions[3 * row + axis]));
+    let (mut chosen, mut volume) = (Vec::new(), 0.0);
+    for (row, of) in materials.iter().enumerate() {
+        if *of == f64::from(material) {
+            chosen.push([0, 1, 2].map(|axis| positions[3 * row + axis]));
             volume += volume0[row] * jacobian.as_ref().map_or(1.0, |jacobian| jacobian[row]);
         }
     }
-    let each = match places.len() {
-        // No matter: there is nothing to surround.
+    let mean = match chosen.len() {
+        // Without particles there is no surface, so any volume will do.
         0 => 1.0,
         count => volume / count as f64,
     };
-    Ok((places, each))
+    Ok((chosen, mean))
 }

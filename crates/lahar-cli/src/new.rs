@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use lahar_scene::builtin::{self, Builtin};
 
 use crate::error::CliError;
-use crate::{args, terminal};
+use crate::{args, shell, terminal};
 
 /// Writes a commented dam break, or the built-in scene that `args.from` names and the files that it needs.
 pub(crate) fn new(args: &args::New) -> Result<ExitCode, CliError> {
@@ -27,7 +27,7 @@ pub(crate) fn new(args: &args::New) -> Result<ExitCode, CliError> {
     for (file, _) in &missing {
         written += &format!(" and {}", file.display());
     }
-    let shown = path.display();
+    let shown = shell::quoted_path(path);
     terminal::note(&format!(
         "wrote {written}\nlook at it with: lahar view {shown}\nrun it with:     lahar run {shown}"
     ));

@@ -1,4 +1,4 @@
-//! What draws a run's frames: the window's renderer where there is an adapter for it, or the processor.
+//! Draws the frames of a run, by the window's renderer if there is an adapter for it, or on the processor.
 
 use lahar::Snapshot;
 use lahar_io::image::{Picture, Renderer, Scenery};
@@ -9,36 +9,37 @@ use crate::args;
 use crate::error::CliError;
 use crate::{appearance, terminal};
 
-/// Draws frames of one run, all by the same view and colours.
+/// Draws the frames of one run, all with the same view and colors.
 pub(crate) enum Painter {
     Cpu(Box<Renderer>),
     #[cfg(feature = "window")]
     Gpu(Box<lahar_app::Painter>),
 }
 
-/// A run and how it is to be drawn.
+/// A run, and the way to draw it.
 pub(crate) struct Subject<'a> {
     #[cfg_attr(
         not(feature = "window"),
-        expect(dead_code, reason = "the processor draws from the scene alone")
+        expect(dead_code, reason = "only the window's renderer needs it")
     )]
     pub(crate) recording: &'a Recording,
-    /// With what options say of its camera.
+    /// The run's scene, with the camera that the options ask for.
     pub(crate) scene: &'a Scene,
-    /// Its first frame.
+    /// The run's first frame.
     pub(crate) first: &'a Snapshot,
-    /// Width and height at most \[pixels\].
+    /// The largest width and height \[pixels\].
     pub(crate) size: [u32; 2],
 }
 
 impl Painter {
-    /// The one that was asked for; says on standard error which it is, and why where that is a choice.
+    /// Returns the renderer that the option asks for. Prints on standard error which one it is, and the reason if the
+    /// option leaves it open.
     pub(crate) fn choose(which: args::Renderer, subject: &Subject) -> Result<Self, CliError> {
         match which {
             args::Renderer::Cpu => Ok(Self::cpu(subject, None)),
             args::Renderer::Gpu => Self::gpu(subject).map_err(|why| {
                 CliError::Machine(format!(
-                    "--renderer gpu: {why}; `--renderer cpu` needs no adapter"
+                    "--renderer gpu: {why}; `--renderer cpu` needs no graphics adapter"
                 ))
             }),
             args::Renderer::Auto => {
@@ -47,20 +48,20 @@ impl Painter {
         }
     }
 
-    /// The processor, and why not the window's renderer, if there is a reason.
+    /// Draws on the processor. `why` is the reason why the window's renderer cannot.
     pub(crate) fn cpu(subject: &Subject, why: Option<&str>) -> Self {
         terminal::note(&match why {
-            None => "pictures by the processor".to_owned(),
-            Some(why) => format!("pictures by the processor: {why}"),
+            None => "drawing on the processor".to_owned(),
+            Some(why) => format!("drawing on the processor: {why}"),
         });
-        Self::Cpu(Box::new(by_processor(subject)))
+        Self::Cpu(Box::new(processor_renderer(subject)))
     }
 
-    /// The window's renderer, after a first picture: what drivers cannot do shows there.
+    /// Returns the window's renderer, after a first picture has shown that the driver can draw.
     #[cfg(feature = "window")]
     fn gpu(subject: &Subject) -> Result<Self, String> {
-        // One size, whatever draws.
-        let [width, height] = by_processor(subject).size();
+        // Both renderers draw pictures of the same size.
+        let [width, height] = processor_renderer(subject).size();
         let scenery = Scenery::recorded(subject.scene, subject.first);
         let style = lahar_io::image::Style {
             width,
@@ -77,7 +78,7 @@ impl Painter {
         .and_then(|mut painter| painter.render(subject.first).map(|_| painter))
         .map_err(|error| error.to_string())?;
         terminal::note(&format!(
-            "pictures by the window's renderer on {}",
+            "drawing by the window's renderer on {}",
             painter.adapter()
         ));
         Ok(Self::Gpu(Box::new(painter)))
@@ -85,10 +86,13 @@ impl Painter {
 
     #[cfg(not(feature = "window"))]
     fn gpu(_subject: &Subject) -> Result<Self, String> {
-        Err("this program was built without the window's renderer".to_owned())
+        Err("lahar was built without the window's renderer".to_owned())
     }
 
-    /// Draws one moment, or says why that cannot be done: then the processor still can.
+    /// Draws one frame.
+    ///
+    /// # Errors
+    /// The reason why the window's renderer cannot draw; the processor still can.
     pub(crate) fn render(&mut self, snapshot: &Snapshot) -> Result<Picture, String> {
         match self {
             Self::Cpu(renderer) => Ok(renderer.render(snapshot)),
@@ -98,7 +102,7 @@ impl Painter {
     }
 }
 
-fn by_processor(subject: &Subject) -> Renderer {
+fn processor_renderer(subject: &Subject) -> Renderer {
     let scenery = Scenery::recorded(subject.scene, subject.first);
     appearance::renderer(subject.scene, &scenery, subject.size)
 }

@@ -1,4 +1,4 @@
-//! How a run is coming along, on standard error: a bar for who watches, a line now and then for logs.
+//! The progress of a command on standard error: a bar on a terminal, and a few lines otherwise.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lahar::Advance;
@@ -6,34 +6,35 @@ use lahar_lab::numbers::{duration, with_prefix};
 
 use crate::terminal;
 
-/// Without anyone watching, so many lines a run.
+/// The number of lines per run where standard error is not a terminal.
 const LINES: u64 = 10;
 
-/// The bar.
+/// The bar or the lines of one command.
 pub(crate) struct Progress {
     bar: Option<ProgressBar>,
     frames: u64,
-    told: u64,
+    /// The number of lines printed so far.
+    lines: u64,
 }
 
-/// How a run stands.
+/// The state of a run after a frame.
 pub(crate) struct Standing {
-    /// Frames done.
+    /// The number of the frame.
     pub(crate) frame: u64,
     /// Simulated time \[s\].
     pub(crate) time: f64,
-    /// Particle-steps a second so far.
+    /// Mean rate of this process \[particle-steps/s\].
     pub(crate) rate: f64,
-    /// Seconds since the start.
+    /// Time since the start of the program \[s\].
     pub(crate) seconds: f64,
-    /// The frame's substeps.
+    /// The substeps of the frame.
     pub(crate) advance: Advance,
 }
 
 impl Progress {
-    /// For a run of `frames` frames; silent if `quiet`.
+    /// Begins to show the progress over `frames` frames.
     pub(crate) fn new(frames: u64) -> Self {
-        let bar = terminal::watched().then(|| {
+        let bar = terminal::is_watched().then(|| {
             let bar = ProgressBar::with_draw_target(Some(frames), ProgressDrawTarget::stderr());
             if let Ok(style) =
                 ProgressStyle::with_template("{bar:30.cyan/blue} frame {pos}/{len}  {msg}")
@@ -47,15 +48,15 @@ impl Progress {
         Self {
             bar,
             frames,
-            told: 0,
+            lines: 0,
         }
     }
 
-    /// After a frame.
+    /// Shows the state of a run after a frame.
     pub(crate) fn update(&mut self, standing: &Standing) {
         let left = standing.seconds / standing.frame.max(1) as f64
             * self.frames.saturating_sub(standing.frame) as f64;
-        let words = format!(
+        let text = format!(
             "t = {:.3} s  {} particle-steps/s  dt {:.2e} s ({})  {} left",
             standing.time,
             with_prefix(standing.rate),
@@ -63,29 +64,29 @@ impl Progress {
             standing.advance.limit.name(),
             duration(left),
         );
-        self.at(standing.frame, words);
+        self.show(standing.frame, text);
     }
 
-    /// After `frame` frames, with what there is to say.
-    pub(crate) fn at(&mut self, frame: u64, words: String) {
+    /// Shows that `frame` frames are done, with a text.
+    pub(crate) fn show(&mut self, frame: u64, text: String) {
         if let Some(bar) = &self.bar {
             bar.set_position(frame);
-            bar.set_message(words);
-        } else if frame * LINES / self.frames.max(1) > self.told {
-            self.told = frame * LINES / self.frames.max(1);
-            terminal::note(&format!("frame {frame}/{}  {words}", self.frames));
+            bar.set_message(text);
+        } else if frame * LINES / self.frames.max(1) > self.lines {
+            self.lines = frame * LINES / self.frames.max(1);
+            terminal::note(&format!("frame {frame}/{}  {text}", self.frames));
         }
     }
 
-    /// Something to know, in between.
-    pub(crate) fn note(&self, what: &str) {
+    /// Prints a line above the bar.
+    pub(crate) fn note(&self, line: &str) {
         match &self.bar {
-            Some(bar) => bar.suspend(|| terminal::note(what)),
-            None => terminal::note(what),
+            Some(bar) => bar.suspend(|| terminal::note(line)),
+            None => terminal::note(line),
         }
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub(crate) fn finish(self) {
         if let Some(bar) = self.bar {
             bar.finish_and_clear();

@@ -1,17 +1,18 @@
-//! A run's frames, read back one by one: what `mesh`, `render` and `report` have in common.
+//! Reads the frames of a run one by one, for `lahar mesh`, `render` and `report`.
 
 use std::path::Path;
+use std::process::ExitCode;
 use std::str::FromStr;
 
 use lahar::Snapshot;
 use lahar_io::output::{Recording, RecordingError};
 use lahar_scene::scene::Scene;
 
-use crate::error::CliError;
+use crate::error::{CliError, INTERRUPTED};
 use crate::interrupt;
 use crate::progress::Progress;
 
-/// Which frames, by their numbers: `12`, `0..60` (the last one included), `0..60:5`, `10..`.
+/// A choice of frames by number: `12`, `0..60` (60 included), `0..60:5` (every fifth), `10..`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Frames {
     first: u64,
@@ -30,7 +31,7 @@ impl Default for Frames {
 }
 
 impl Frames {
-    fn holds(self, number: u64) -> bool {
+    fn contains(self, number: u64) -> bool {
         (self.first..=self.last).contains(&number)
             && (number - self.first).is_multiple_of(self.every)
     }
@@ -40,7 +41,7 @@ impl FromStr for Frames {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || "write it as 12, 0..60, 0..60:5 or 10..".to_owned();
+        let wrong = || "expected frames like 12, 0..60, 0..60:5 or 10..".to_owned();
         let number = |text: &str| text.trim().parse::<u64>().map_err(|_| wrong());
         let (range, every) = match text.split_once(':') {
             Some((range, every)) => (range, number(every)?),
@@ -58,16 +59,17 @@ impl FromStr for Frames {
     }
 }
 
+/// Turns the error of a recording into one of the command line.
 pub(crate) fn unreadable(error: RecordingError) -> CliError {
     CliError::Usage(error.to_string())
 }
 
-/// The run in a folder.
+/// Opens the run in a folder.
 pub(crate) fn open(folder: &Path) -> Result<Recording, CliError> {
     Recording::open(folder).map_err(unreadable)
 }
 
-/// The scene of a run, with changes.
+/// Returns the scene of a run, with changes.
 pub(crate) fn scene(
     recording: &Recording,
     changes: &[(String, String)],
@@ -76,45 +78,57 @@ pub(crate) fn scene(
     Ok(Scene::recorded(&record.scene, &record.scene_name, changes)?)
 }
 
-/// What the frames came to.
+/// Whether all frames were worked on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum End {
-    Done,
+pub(crate) enum Completion {
+    /// All were.
+    Complete,
+    /// Ctrl-C or SIGTERM came first.
     Interrupted,
 }
 
-/// `work(number, snapshot)` on each of the chosen frames, in order; it says what is to be shown of them.
+impl Completion {
+    /// The exit code of the command.
+    pub(crate) fn exit_code(self) -> ExitCode {
+        match self {
+            Self::Complete => ExitCode::SUCCESS,
+            Self::Interrupted => ExitCode::from(INTERRUPTED),
+        }
+    }
+}
+
+/// Calls `work(number, snapshot)` for each chosen frame, in order. `work` returns the text for the progress bar.
 pub(crate) fn each(
     recording: &Recording,
     frames: Frames,
     mut work: impl FnMut(u64, &Snapshot) -> Result<String, CliError>,
-) -> Result<End, CliError> {
+) -> Result<Completion, CliError> {
     let chosen = chosen(recording, frames)?;
     interrupt::watch()?;
     let mut progress = Progress::new(chosen.len() as u64);
-    let mut end = End::Done;
+    let mut completion = Completion::Complete;
     for (done, index) in (1..).zip(chosen) {
         if interrupt::asked_to_stop() {
-            end = End::Interrupted;
+            completion = Completion::Interrupted;
             break;
         }
         let snapshot = recording.frame(index).map_err(unreadable)?;
-        let words = work(recording.number(index), &snapshot)?;
-        progress.at(done, words);
+        let text = work(recording.number(index), &snapshot)?;
+        progress.show(done, text);
     }
     progress.finish();
-    Ok(end)
+    Ok(completion)
 }
 
-/// The places of the chosen frames in the recording, at least one.
+/// Returns the indices of the chosen frames in the recording, at least one.
 pub(crate) fn chosen(recording: &Recording, frames: Frames) -> Result<Vec<usize>, CliError> {
     let number = |index: &usize| recording.number(*index);
     let chosen: Vec<usize> = (0..recording.len())
-        .filter(|index| frames.holds(number(index)))
+        .filter(|index| frames.contains(number(index)))
         .collect();
     if chosen.is_empty() {
         return Err(CliError::Usage(format!(
-            "{} has none of these frames, it has {} to {}",
+            "{} has none of these frames; it has frames {} to {}",
             recording.folder().display(),
             number(&0),
             number(&(recording.len() - 1)),
@@ -129,15 +143,15 @@ mod tests {
 
     #[test]
     fn frames_are_chosen_by_number() {
-        let holds = |text: &str| -> Vec<u64> {
+        let chosen = |text: &str| -> Vec<u64> {
             let frames: Frames = text.parse().unwrap();
-            (0..13).filter(|n| frames.holds(*n)).collect()
+            (0..13).filter(|n| frames.contains(*n)).collect()
         };
-        assert_eq!(holds("7"), [7]);
-        assert_eq!(holds("2..4"), [2, 3, 4]);
-        assert_eq!(holds("1..12:5"), [1, 6, 11]);
-        assert_eq!(holds("10.."), [10, 11, 12]);
-        assert_eq!(holds("0..:6"), [0, 6, 12]);
+        assert_eq!(chosen("7"), [7]);
+        assert_eq!(chosen("2..4"), [2, 3, 4]);
+        assert_eq!(chosen("1..12:5"), [1, 6, 11]);
+        assert_eq!(chosen("10.."), [10, 11, 12]);
+        assert_eq!(chosen("0..:6"), [0, 6, 12]);
         for wrong in ["", "x", "4..2", "1..5:0", "-3", "1:2:3"] {
             assert!(wrong.parse::<Frames>().is_err(), "{wrong}");
         }

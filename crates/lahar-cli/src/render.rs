@@ -1,4 +1,4 @@
-//! `lahar render`: pictures and films of a run's frames, long after it has run.
+//! `lahar render`: draws pictures and films from the frames of a run.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -8,9 +8,9 @@ use lahar_io::image::{self, Mp4, Mp4Maker, Picture};
 use lahar_io::output::{Recording, film_pace, frame_name};
 use lahar_scene::scene::Scene;
 
-use crate::error::{CliError, INTERRUPTED};
+use crate::error::CliError;
 use crate::painter::{Painter, Subject};
-use crate::recorded_frames::{self, End};
+use crate::recorded_frames::{self, Completion};
 use crate::{args, terminal};
 
 /// Draws the frames of `args.recorded.run`.
@@ -32,30 +32,27 @@ pub(crate) fn render(args: &args::Render) -> Result<ExitCode, CliError> {
     };
     make_folder(&folder)?;
     let rate = film_rate(&recording, &scene, &chosen);
-    let end = match draw(args, &recording, &folder, rate, &mut painter)? {
-        Drawn::All(end) => end,
+    let completion = match draw(args, &recording, &folder, rate, &mut painter)? {
+        Drawn::All(completion) => completion,
         Drawn::Failed(why) if args.renderer == args::Renderer::Gpu => {
             return Err(CliError::Machine(format!("--renderer gpu: {why}")));
         }
-        // From the first frame on: a film has one look.
+        // All frames are drawn again, so that the film has one look.
         Drawn::Failed(why) => {
             painter = Painter::cpu(&subject, Some(&why));
             match draw(args, &recording, &folder, rate, &mut painter)? {
-                Drawn::All(end) => end,
+                Drawn::All(completion) => completion,
                 Drawn::Failed(why) => return Err(CliError::Machine(why)),
             }
         }
     };
-    Ok(match end {
-        End::Done => ExitCode::SUCCESS,
-        End::Interrupted => ExitCode::from(INTERRUPTED),
-    })
+    Ok(completion.exit_code())
 }
 
-/// What came of drawing.
+/// The result of drawing all frames.
 enum Drawn {
-    All(End),
-    /// The painter can draw no more, and why.
+    All(Completion),
+    /// The painter cannot draw any more, for this reason.
     Failed(String),
 }
 
@@ -69,7 +66,7 @@ fn draw(
 ) -> Result<Drawn, CliError> {
     let mut films = args.video.then(|| Films::new(folder, rate));
     let mut failed = None;
-    let end = recorded_frames::each(recording, args.recorded.frames, |number, snapshot| {
+    let completion = recorded_frames::each(recording, args.recorded.frames, |number, snapshot| {
         let picture = painter.render(snapshot).map_err(|why| {
             failed = Some(format!("frame {number}: {why}"));
             CliError::Machine(why)
@@ -88,17 +85,17 @@ fn draw(
     if let Some(why) = failed {
         return Ok(Drawn::Failed(why));
     }
-    let end = end?;
+    let completion = completion?;
     if !args.no_images {
         terminal::print(&format!("  {}/\n", folder.display()));
     }
     if let Some(films) = films {
         films.finish()?;
     }
-    Ok(Drawn::All(end))
+    Ok(Drawn::All(completion))
 }
 
-/// What the options say of the scene's camera.
+/// The changes to the scene that the options ask for.
 fn changes(args: &args::Render) -> Vec<(String, String)> {
     let mut changes = args.set.clone();
     if let Some(direction) = &args.camera {
@@ -110,7 +107,7 @@ fn changes(args: &args::Render) -> Vec<(String, String)> {
     changes
 }
 
-/// Pictures a second for a film of all chosen frames, at the speed at which things happened if that is not a flash.
+/// The rate of a film of all chosen frames \[1/s\]: in real time, unless the film would be too short.
 fn film_rate(recording: &Recording, scene: &Scene, chosen: &[usize]) -> f64 {
     let (Some(first), Some(last)) = (chosen.first(), chosen.last()) else {
         return scene.frame_rate;
@@ -119,18 +116,18 @@ fn film_rate(recording: &Recording, scene: &Scene, chosen: &[usize]) -> f64 {
     let shown = chosen.len().max(2) as f64 - 1.0;
     let rate = scene.frame_rate * shown / span;
     let pace = film_pace(rate, chosen.len() as u64);
-    // All frames are in the film, so none may be skipped.
-    (pace.rate * pace.every as f64).min(MOST_RATE)
+    // The film contains all frames, so none may be skipped.
+    (pace.rate * pace.every as f64).min(HIGHEST_RATE)
 }
 
-/// What GIF can do, in hundredths of a second, and eyes can see.
-const MOST_RATE: f64 = 50.0;
+/// The highest rate of a film \[1/s\]: GIF gives delays in hundredths of a second, and browsers slow down one.
+const HIGHEST_RATE: f64 = 50.0;
 
 fn cannot(path: &Path, error: &std::io::Error) -> CliError {
     CliError::Machine(format!("{}: cannot write: {error}", path.display()))
 }
 
-/// The films under way: a GIF always, MP4 where there is something that makes it.
+/// The films being made: always a GIF, and an MP4 if ffmpeg or the feature `mp4` is there.
 struct Films {
     gif: (PathBuf, image::Film),
     mp4: Option<(PathBuf, Mp4Maker, Option<Mp4>)>,
@@ -169,7 +166,7 @@ impl Films {
         if running.push(picture).is_err()
             && let Some(ended) = film.take()
         {
-            // What it has to say is worth more than that its pipe is closed.
+            // Its own message says more than the broken pipe.
             ended.finish().map_err(|error| cannot(path, &error))?;
         }
         Ok(())

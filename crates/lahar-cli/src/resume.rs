@@ -13,7 +13,7 @@ use crate::args;
 use crate::error::CliError;
 use crate::run::{self, Origin};
 use crate::run_plan::RunPlan;
-use crate::terminal;
+use crate::{shell, terminal};
 
 /// Resumes the run in `args.folder`.
 pub(crate) fn resume(args: &args::Resume) -> Result<ExitCode, CliError> {
@@ -22,7 +22,7 @@ pub(crate) fn resume(args: &args::Resume) -> Result<ExitCode, CliError> {
     let mut start = Start::read(&checkpoints)?;
     if start.lahar != env!("CARGO_PKG_VERSION") {
         return Err(CliError::Usage(format!(
-            "{} was begun by lahar {}, this is {}: it would go on with other bits; use that version",
+            "{} was started by lahar {}, and this is {}, which would give other bits; use that version",
             folder.path().display(),
             start.lahar,
             env!("CARGO_PKG_VERSION")
@@ -36,7 +36,7 @@ pub(crate) fn resume(args: &args::Resume) -> Result<ExitCode, CliError> {
     let last_frame = last_frame(args, &scene).unwrap_or(start.frames);
     if last_frame < start.frames {
         return Err(CliError::Usage(format!(
-            "{} goes to frame {} already; it can go on to a later one",
+            "{} already goes to frame {}; it can only continue to a later one",
             folder.path().display(),
             start.frames
         )));
@@ -87,8 +87,10 @@ fn report_finished(folder: &RunFolder, record: &Record, as_json: bool) {
     } else {
         let path = folder.path().display();
         terminal::print(&format!(
-            "{path} is done: {} frames to t = {:.4} s; `lahar resume {path} --until T` goes on beyond its end\n",
-            record.frames, record.time
+            "{path} is done: {} frames to t = {:.4} s; `lahar resume {} --until T` continues beyond its end\n",
+            record.frames,
+            record.time,
+            shell::quoted_path(folder.path()),
         ));
     }
 }

@@ -12,10 +12,9 @@ use lahar_io::output::{self, OutputCounts, PhaseSeconds, Record, RunFolder, Stat
 use lahar_scene::driver::Driver;
 
 use crate::error::{CliError, INTERRUPTED};
-use crate::frame_loop::{FrameLoop, RunError};
+use crate::frame_loop::{End, FrameLoop, RunError};
 use crate::run_plan::RunPlan;
-use crate::summary::{self, End};
-use crate::{clock, interrupt, terminal};
+use crate::{clock, interrupt, summary, terminal, threads};
 
 /// The run that `lahar resume` continues.
 pub(crate) struct Origin {
@@ -41,7 +40,7 @@ pub(crate) fn begin(
     origin: Option<Origin>,
     as_json: bool,
 ) -> Result<ExitCode, CliError> {
-    let pool = thread_pool(plan.threads)?;
+    let pool = threads::pool(plan.threads)?;
     interrupt::watch()?;
     let built = pool.install(|| plan.scene.build(plan.isa))?;
     let scenery = scenery(&plan, &*built.simulation);
@@ -90,14 +89,6 @@ pub(crate) fn begin(
         End::Interrupted => ExitCode::from(INTERRUPTED),
         End::Done | End::Deadline => ExitCode::SUCCESS,
     })
-}
-
-fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, CliError> {
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .thread_name(|index| format!("lahar-{index}"))
-        .build()
-        .map_err(|error| CliError::Machine(format!("cannot start {threads} threads: {error}")))
 }
 
 /// The parts of the scene that pictures show beside its particles.
@@ -209,12 +200,12 @@ fn into_cli_error(error: RunError, folder: &RunFolder) -> CliError {
     let folder = folder.path().to_owned();
     match error {
         RunError::Simulation { failure, frame } => CliError::Simulation {
-            what: Retry::in_vain(&failure),
+            message: Retry::in_vain(&failure),
             folder,
             frames: frame,
             checkpoint,
         },
-        RunError::Output(error) => CliError::Broken {
+        RunError::Output(error) => CliError::RunOutput {
             error,
             folder,
             checkpoint,

@@ -1,4 +1,4 @@
-//! From what was written on the command line to what is done: everything that can be wrong is found here.
+//! The checked plan of a run, made from the options of the command line. All mistakes in options are found here.
 
 use std::path::PathBuf;
 
@@ -11,54 +11,53 @@ use lahar_scene::scene::Scene;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use crate::appearance;
-use crate::args;
 use crate::error::CliError;
+use crate::{appearance, args, threads};
 
-/// A run, checked.
+/// A checked plan of a run: the scene, and the way to run it.
 pub(crate) struct RunPlan {
-    /// What is run.
+    /// The scene to run.
     pub(crate) scene: Scene,
-    /// With which instructions.
+    /// The instruction set to compute with.
     pub(crate) isa: Isa,
-    /// On how many threads.
+    /// The number of threads to compute with.
     pub(crate) threads: usize,
-    /// Frames after the one at the start.
+    /// The number of frames after frame 0.
     pub(crate) frames: u64,
-    /// What is written.
+    /// The files to write.
     pub(crate) outputs: Outputs,
-    /// The folder asked for; the usual one if none.
+    /// The folder to write; `None`: out/NAME, numbered if it exists.
     pub(crate) folder: Option<PathBuf>,
-    /// Whether a run in it is replaced.
+    /// True if a run in that folder is replaced.
     pub(crate) overwrite: bool,
-    /// Say what would be done only.
+    /// True if the plan is only described.
     pub(crate) dry_run: bool,
-    /// Stop after so many seconds, whatever is left.
+    /// The time after which the run stops \[s\].
     pub(crate) deadline: Option<f64>,
 }
 
-/// What a run writes; the same when it goes on.
+/// The files that a run writes, before and after it is resumed.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Outputs {
-    /// Files of a frame.
+    /// The formats of output.
     pub(crate) formats: Formats,
-    /// Frames that the film is paced for.
+    /// The number of frames that sets the pace of the film.
     pub(crate) film_frames: u64,
 }
 
-/// What is written of frames.
+/// The formats in which frames are written.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Formats {
-    /// Particles, in the table's order.
+    /// Formats of particles, in the order of [`FORMATS`].
     pub(crate) particles: Vec<Format>,
-    /// Pictures, every so many frames; 0: none.
+    /// The number of frames per picture; 0: no pictures.
     pub(crate) png: u64,
-    /// A film.
+    /// True if a film is made.
     pub(crate) gif: bool,
 }
 
 impl Formats {
-    /// From their names.
+    /// Returns the formats of these names.
     fn from_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Result<Self, String> {
         let mut formats = Self::default();
         for name in names {
@@ -85,7 +84,7 @@ impl Formats {
         Ok(formats)
     }
 
-    /// Their names.
+    /// The names of the formats.
     pub(crate) fn names(&self) -> Vec<&'static str> {
         let pictures = [(self.png > 0, "png"), (self.gif, "gif")];
         let names: Vec<_> = (self.particles.iter())
@@ -100,13 +99,8 @@ impl Formats {
     }
 }
 
-/// Threads of this machine.
-fn all_threads() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
-}
-
 impl RunPlan {
-    /// Of `lahar run`.
+    /// The plan of `lahar run`.
     pub(crate) fn from_args(args: &args::Run) -> Result<Self, CliError> {
         let scene = Scene::load(&args.scene.scene, &args.scene.set)?;
         let mut formats = match &args.format {
@@ -122,13 +116,13 @@ impl RunPlan {
         }
         let frames = match (args.frames, args.until) {
             (Some(frames), _) => frames,
-            // A little less, so that 0.1 s at 60 frames a second is 6 frames.
+            // A little less, so that 0.1 s at 60 frames per second is 6 frames.
             (None, Some(time)) => (time * scene.frame_rate - 1e-9).ceil().max(1.0) as u64,
             (None, None) => scene.frames(),
         };
         Ok(Self {
             isa: args.scene.isa.unwrap_or_else(Isa::detect),
-            threads: args.threads.map_or_else(all_threads, usize::from),
+            threads: threads::count(args.threads),
             frames,
             outputs: Outputs {
                 formats,
@@ -142,13 +136,13 @@ impl RunPlan {
         })
     }
 
-    /// Of `lahar` where there is no display: the scene with a film and some pictures, within `deadline` seconds.
+    /// The plan of `lahar` without a display: the scene with a film and some pictures, stopped after `deadline` \[s\].
     pub(crate) fn demonstration(scene: &str, deadline: f64) -> Result<Self, CliError> {
         let scene = Scene::load(scene, &[])?;
         let frames = scene.frames();
         Ok(Self {
             isa: Isa::detect(),
-            threads: all_threads(),
+            threads: threads::count(None),
             frames,
             outputs: Outputs {
                 formats: Formats {
@@ -166,7 +160,7 @@ impl RunPlan {
         })
     }
 
-    /// What `checkpoints/start.json` keeps of this.
+    /// The contents of `checkpoints/start.json`.
     pub(crate) fn start(&self, warnings: &[String]) -> Start {
         Start {
             lahar: env!("CARGO_PKG_VERSION").to_owned(),
@@ -181,8 +175,8 @@ impl RunPlan {
         }
     }
 
-    /// The plan of which `start` was kept, on `threads` threads or all, with the instruction set `isa` or the one
-    /// it began with.
+    /// The plan of a run that is resumed, with the number of threads and the instruction set that the options ask for.
+    /// Without the latter, the run keeps the instruction set that it was started with.
     pub(crate) fn of_start(
         start: &Start,
         scene: Scene,
@@ -192,17 +186,19 @@ impl RunPlan {
         let began_with = Isa::ALL.into_iter().find(|isa| isa.name() == start.isa);
         let Some(isa) = isa.or(began_with.filter(|isa| isa.is_available())) else {
             return Err(CliError::Usage(format!(
-                "the run was begun with the instruction set {}, which this machine does not have; `--isa portable` goes on with another, and other roundings",
+                "the run was started with the instruction set {}, which this machine does not have; `--isa portable` continues it with other roundings",
                 start.isa
             )));
         };
         let outputs = Outputs::deserialize(&start.outputs).map_err(|error| {
-            CliError::Usage(format!("what the run writes cannot be read: {error}"))
+            CliError::Usage(format!(
+                "checkpoints/start.json: the outputs of the run cannot be read: {error}"
+            ))
         })?;
         Ok(Self {
             scene,
             isa,
-            threads: threads.map_or_else(all_threads, usize::from),
+            threads: threads::count(threads),
             frames: start.frames,
             outputs,
             folder: None,
@@ -212,7 +208,7 @@ impl RunPlan {
         })
     }
 
-    /// The scene's name in paths.
+    /// The name of the run's folder.
     pub(crate) fn name(&self) -> String {
         let stem = std::path::Path::new(&self.scene.name)
             .file_stem()
@@ -224,7 +220,7 @@ impl RunPlan {
         }
     }
 
-    /// Makes the folder.
+    /// Makes the folder of the run.
     pub(crate) fn make_folder(&self) -> Result<RunFolder, CliError> {
         Ok(match &self.folder {
             Some(path) => RunFolder::at(path, self.overwrite)?,
@@ -232,7 +228,7 @@ impl RunPlan {
         })
     }
 
-    /// The fields that frames are made of.
+    /// The particle fields that files and pictures need.
     pub(crate) fn fields(&self) -> Vec<Field> {
         let particles = &self.outputs.formats.particles;
         let chosen = self.scene.output_fields();
@@ -248,7 +244,7 @@ impl RunPlan {
         fields.filter(|field| wanted(*field)).collect()
     }
 
-    /// Pictures, if wanted.
+    /// The plan of the pictures, if there are any.
     pub(crate) fn pictures(&self, scenery: &Scenery) -> Option<PicturePlan> {
         let [width, height] = self.scene.output.picture_size;
         (self.outputs.formats.png > 0).then(|| PicturePlan {
@@ -257,7 +253,7 @@ impl RunPlan {
         })
     }
 
-    /// A film, if wanted.
+    /// The plan of the film, if there is one.
     pub(crate) fn film(&self, scenery: &Scenery) -> Option<FilmPlan> {
         self.outputs.formats.gif.then(|| FilmPlan {
             renderer: appearance::renderer(
@@ -270,7 +266,7 @@ impl RunPlan {
     }
 }
 
-/// Pictures of a demonstration, besides the first.
+/// The number of pictures of a demonstration after the first one.
 const DEMONSTRATION_PICTURES: u64 = 6;
 
 #[cfg(test)]

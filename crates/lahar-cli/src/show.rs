@@ -12,6 +12,7 @@ use crate::error::CliError;
 use crate::terminal;
 use lahar_lab::numbers::with_prefix;
 
+/// Prints the description of a scene, or its text.
 pub(crate) fn show(args: &args::Show) -> Result<ExitCode, CliError> {
     if args.toml {
         return print_toml(&args.scene.scene);
@@ -206,6 +207,7 @@ pub(crate) fn text(value: &Value) -> String {
     lines.join("\n") + "\n"
 }
 
+/// The text of a JSON string.
 fn plain(value: &Value) -> String {
     value.as_str().unwrap_or_default().to_owned()
 }

@@ -1,40 +1,33 @@
-//! What a run says of itself: before it begins, and when it has ended.
+//! The text of a run: before it begins, after it has ended, and for a dry run.
 
 use std::process::ExitCode;
 
 use lahar_io::checkpoint::Progress;
 use lahar_io::output::{OutputCounts, Record, RunFolder};
+use lahar_lab::numbers::{duration, with_prefix};
 use serde_json::{Value, json};
 
 use crate::error::CliError;
+use crate::frame_loop::End;
 use crate::run_plan::RunPlan;
-use crate::{show, terminal};
-use lahar_lab::numbers::{duration, with_prefix};
+use crate::{shell, show, terminal};
 
-/// Why the frames ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum End {
-    /// All are there.
-    Done,
-    /// Ctrl-C.
-    Interrupted,
-    /// There was no more time.
-    Deadline,
-}
-
-/// What is about to be run.
+/// Returns the line that announces a run. `from` is the progress of a run that is resumed.
 pub(crate) fn announcement(
     plan: &RunPlan,
     record: &Record,
     folder: &RunFolder,
     from: Option<&Progress>,
 ) -> String {
-    let which = match from {
-        None => format!("{} frames", plan.frames),
-        Some(progress) => format!("on from frame {} of {}", progress.frame, plan.frames),
+    let frames = match from {
+        None => format!("{} frames of", plan.frames),
+        Some(progress) => format!(
+            "resumed from frame {} of {}, each of",
+            progress.frame, plan.frames
+        ),
     };
     format!(
-        "{}: {} particles, {which} of {:.4} s, {} on {} thread(s), into {}",
+        "{}: {} particles, {frames} {:.4} s, {} on {} thread(s), into {}",
         plan.scene.title,
         record.particles,
         1.0 / plan.scene.frame_rate,
@@ -44,7 +37,7 @@ pub(crate) fn announcement(
     )
 }
 
-/// What a run has come to.
+/// Prints the result of a run, as one JSON document if `as_json`.
 pub(crate) fn print(
     plan: &RunPlan,
     record: &Record,
@@ -56,7 +49,7 @@ pub(crate) fn print(
     if as_json {
         let mut value = serde_json::to_value(record).unwrap_or_else(|_| json!({}));
         if let Value::Object(map) = &mut value {
-            // The scene is in run.json; here it would bury the rest.
+            // The scene is long, and it is in run.json.
             map.remove("scene");
             map.insert("folder".to_owned(), json!(folder.path()));
             map.insert("formats".to_owned(), json!(plan.outputs.formats.names()));
@@ -76,54 +69,58 @@ pub(crate) fn print(
             duration(record.seconds),
             with_prefix(record.particle_steps_per_second),
         ));
-        for (there, what) in [
-            (written.film, folder.video().display().to_string()),
-            (
-                written.images > 0,
-                format!(
-                    "{}/ ({} pictures)",
-                    folder.images().display(),
-                    written.images
-                ),
-            ),
-            (
-                written.particles > 0,
-                format!(
-                    "{}/ ({} frames)",
-                    folder.frames().display(),
-                    written.particles
-                ),
-            ),
-            (true, folder.diagnostics().display().to_string()),
-            (
-                folder.probes().is_dir(),
-                format!("{}/", folder.probes().display()),
-            ),
-            (true, folder.record().display().to_string()),
-        ] {
-            if there {
-                terminal::print(&format!("  {what}\n"));
-            }
-        }
+        print_files(folder, written);
     }
     match end {
         End::Done => {}
         End::Deadline => terminal::note(&format!(
-            "stopped at t = {:.3} s of {:.3} s to end within a minute; `lahar resume {}` goes on to the end",
+            "stopped at t = {:.3} s of {:.3} s to end within a minute; `lahar resume {}` continues to the end",
             record.time,
             plan.scene.duration,
-            folder.path().display(),
+            shell::quoted_path(folder.path()),
         )),
         End::Interrupted => terminal::note(&format!(
-            "interrupted after {} of {} frames; `lahar resume {}` goes on",
+            "interrupted after {} of {} frames; `lahar resume {}` continues",
             record.frames,
             plan.frames + 1,
-            folder.path().display(),
+            shell::quoted_path(folder.path()),
         )),
     }
 }
 
-/// What would be done.
+/// Lists the files of a run.
+fn print_files(folder: &RunFolder, written: OutputCounts) {
+    let mut files = Vec::new();
+    if written.film {
+        files.push(folder.video().display().to_string());
+    }
+    if written.images > 0 {
+        let images = folder.images();
+        files.push(format!(
+            "{}/ ({} pictures)",
+            images.display(),
+            written.images
+        ));
+    }
+    if written.particles > 0 {
+        let frames = folder.frames();
+        files.push(format!(
+            "{}/ ({} frames)",
+            frames.display(),
+            written.particles
+        ));
+    }
+    files.push(folder.diagnostics().display().to_string());
+    if folder.probes().is_dir() {
+        files.push(format!("{}/", folder.probes().display()));
+    }
+    files.push(folder.record().display().to_string());
+    for file in files {
+        terminal::print(&format!("  {file}\n"));
+    }
+}
+
+/// Prints what a run would do, as one JSON document if `as_json`.
 pub(crate) fn dry_run(plan: &RunPlan, as_json: bool) -> Result<ExitCode, CliError> {
     let mut value = show::describe(&plan.scene, plan.isa)?;
     let folder = match &plan.folder {
@@ -142,8 +139,7 @@ pub(crate) fn dry_run(plan: &RunPlan, as_json: bool) -> Result<ExitCode, CliErro
     } else {
         terminal::print(&show::text(&value));
         terminal::print(&format!(
-            "would write {} and {} more frames ({}) into {folder} on {} thread(s)\n",
-            "frame 0",
+            "would write frame 0 and {} more ({}) into {folder} on {} thread(s)\n",
             plan.frames,
             plan.outputs.formats.names().join(", "),
             plan.threads,

@@ -1,4 +1,4 @@
-//! The only lines that print. A reader that has gone away (`lahar list | head -1`) is no error.
+//! The only functions that print. A closed pipe, as in `lahar list | head -1`, is not an error.
 
 use std::io::{IsTerminal, Write, stderr, stdout};
 
@@ -20,12 +20,12 @@ pub(crate) fn note(text: &str) {
     drop(writeln!(stderr().lock(), "{text}"));
 }
 
-/// Whether standard error takes colours.
-pub(crate) fn colours() -> bool {
+/// Returns true if standard error shows colors.
+pub(crate) fn shows_colors() -> bool {
     stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty())
 }
 
-/// Whether someone is looking at standard error.
-pub(crate) fn watched() -> bool {
+/// Returns true if standard error is a terminal, where a progress bar can be seen.
+pub(crate) fn is_watched() -> bool {
     stderr().is_terminal()
 }

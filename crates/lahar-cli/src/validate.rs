@@ -1,4 +1,4 @@
-//! `lahar validate`: physics cases against their references, as a table, a report and plots.
+//! `lahar validate`: runs physics cases and compares them with their references, in a table, a report and plots.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -8,25 +8,20 @@ use lahar_io::files::{make_folder, write_file};
 use lahar_lab::validate::{self, Case, Options, Outcome};
 
 use crate::error::{CliError, FAILED};
-use crate::{args, clock, terminal};
+use crate::{args, clock, shell, terminal, threads};
 
-/// The folder of plots in the report's.
+/// The folder of the plots, inside the folder of the report.
 const IMAGES: &str = "images/validation";
 
-/// Runs the cases that are asked for.
+/// Runs the cases of `args`.
 pub(crate) fn validate(args: &args::Validate) -> Result<ExitCode, CliError> {
-    let wanted = wanted(args)?;
-    let threads = args.threads.map_or_else(
-        || std::thread::available_parallelism().map_or(1, usize::from),
-        usize::from,
-    );
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool
-        .map_err(|error| CliError::Machine(format!("cannot start {threads} threads: {error}")))?;
+    let chosen = chosen_cases(args)?;
+    let threads = threads::count(args.threads);
+    let pool = threads::pool(threads)?;
     let isa = args.isa.unwrap_or_else(Isa::detect);
     let started = clock::seconds();
     let mut outcomes: Vec<(&Case, Outcome)> = Vec::new();
-    for (case, scene_file) in wanted {
+    for (case, scene_file) in chosen {
         let options = Options {
             quick: args.quick,
             isa,
@@ -42,12 +37,12 @@ pub(crate) fn validate(args: &args::Validate) -> Result<ExitCode, CliError> {
         }
         outcomes.push((case, outcome));
     }
-    let how = how(args, threads, isa, clock::seconds() - started);
+    let origin = origin(args, threads, isa, clock::seconds() - started);
     let folder = args
         .output
         .clone()
         .unwrap_or_else(|| PathBuf::from("out/validate"));
-    let files = write(&outcomes, &folder, &how)?;
+    let plots = write(&outcomes, &folder, &origin)?;
     let findings = || outcomes.iter().flat_map(|(_, outcome)| &outcome.findings);
     if args.json {
         terminal::print_json(&validate::json(findings()));
@@ -59,7 +54,7 @@ pub(crate) fn validate(args: &args::Validate) -> Result<ExitCode, CliError> {
             "\n{met} of {} targets are met; {} and {} plots in {}\n",
             targets().count(),
             "validation.md",
-            files,
+            plots,
             folder.display()
         ));
     }
@@ -71,31 +66,31 @@ pub(crate) fn validate(args: &args::Validate) -> Result<ExitCode, CliError> {
     })
 }
 
-/// The cases of the words on the command line, each with the file that its scene is taken from, if one is named; all
-/// that are not long without words.
-fn wanted(args: &args::Validate) -> Result<Vec<(&'static Case, Option<String>)>, CliError> {
+/// The cases that `args` names, each with the scene file that replaces its scene, if one is given. Without names: all
+/// cases that are not long.
+fn chosen_cases(args: &args::Validate) -> Result<Vec<(&'static Case, Option<String>)>, CliError> {
     if args.cases.is_empty() {
         let cases = validate::cases().filter(|case| args.long || !case.long);
         return Ok(cases.map(|case| (case, None)).collect());
     }
-    let mut wanted = Vec::new();
+    let mut chosen = Vec::new();
     for name in &args.cases {
         let cases = validate::find(name);
         if cases.is_empty() {
             let names: Vec<&str> = validate::cases().map(|case| case.id).collect();
             return Err(CliError::Usage(format!(
-                "there is no case \"{name}\"; there are {}; a scene file is run for the cases of the scene with its name",
+                "there is no case \"{name}\"; there are {}; a scene file replaces the scene of its name",
                 names.join(", ")
             )));
         }
         let file = Path::new(name).extension().is_some().then(|| name.clone());
-        wanted.extend(cases.into_iter().map(|case| (case, file.clone())));
+        chosen.extend(cases.into_iter().map(|case| (case, file.clone())));
     }
-    Ok(wanted)
+    Ok(chosen)
 }
 
-/// What was run, on what.
-fn how(args: &args::Validate, threads: usize, isa: Isa, seconds: f64) -> String {
+/// A sentence for the report: the command, and what ran it.
+fn origin(args: &args::Validate, threads: usize, isa: Isa, seconds: f64) -> String {
     let mut command = "lahar validate".to_owned();
     for (given, word) in [(args.quick, " --quick"), (args.long, " --long")] {
         if given {
@@ -103,13 +98,13 @@ fn how(args: &args::Validate, threads: usize, isa: Isa, seconds: f64) -> String 
         }
     }
     for word in &args.cases {
-        command += &format!(" {word}");
+        command += &format!(" {}", shell::quoted(word));
     }
     for (key, value) in &args.set {
-        command += &format!(" --set {key}={value}");
+        command += &format!(" --set {}", shell::quoted(&format!("{key}={value}")));
     }
     if let Some(folder) = &args.output {
-        command += &format!(" -o {}", folder.display());
+        command += &format!(" -o {}", shell::quoted_path(folder));
     }
     format!(
         "Made by `{command}`, version {}, {} on {threads} thread(s), in {seconds:.0} s.",

@@ -1,4 +1,4 @@
-//! The window where there is one, and what happens where there is none.
+//! `lahar view`, and `lahar` without a command: opens the window. `lahar` runs the default scene where none can open.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -15,10 +15,10 @@ use crate::{run, terminal};
 /// The scene that opens first.
 const DEFAULT_SCENE: &str = "dam-break";
 
-/// Without a display the default scene stops after so many seconds: it is to end within a minute, film included.
+/// Without a display, the default scene stops after this time \[s\], so that it ends within a minute, film included.
 const DEADLINE: f64 = 45.0;
 
-/// `lahar`: the window, or the same scene without.
+/// `lahar` without a command: opens the window on the default scene, or runs that scene without one.
 pub(crate) fn open_or_run() -> Result<ExitCode, CliError> {
     match open_window(None) {
         Ok(()) => Ok(ExitCode::SUCCESS),
@@ -31,7 +31,7 @@ pub(crate) fn open_or_run() -> Result<ExitCode, CliError> {
     }
 }
 
-/// `lahar view`.
+/// `lahar view`: opens the window on a scene or a finished run.
 pub(crate) fn open(view: View) -> Result<ExitCode, CliError> {
     check(&view)?;
     match open_window(Some(view)) {
@@ -42,14 +42,14 @@ pub(crate) fn open(view: View) -> Result<ExitCode, CliError> {
     }
 }
 
-/// What is wrong with the scene or the run is found before anything opens.
+/// Checks the scene or the run before anything opens.
 fn check(view: &View) -> Result<(), CliError> {
     let path = Path::new(&view.scene_or_run);
     if builtin::find(&view.scene_or_run).is_none() && (path.is_dir() || path.ends_with("run.json"))
     {
         if view.compare.is_some() || !view.set.is_empty() {
             return Err(CliError::Usage(format!(
-                "{} is a finished run: --set and --compare need its scene",
+                "{} is a finished run, which --set and --compare cannot change; give its scene instead",
                 path.display()
             )));
         }
@@ -72,7 +72,10 @@ fn check(view: &View) -> Result<(), CliError> {
     Ok(())
 }
 
-/// Opens the window and returns when it is closed, or says why there is none.
+/// Opens the window, and returns when it is closed.
+///
+/// # Errors
+/// The reason why there is no window.
 #[cfg(feature = "window")]
 fn open_window(view: Option<View>) -> Result<(), String> {
     let mut options = lahar_app::Options::default();
@@ -90,8 +93,8 @@ fn open_window(view: Option<View>) -> Result<(), String> {
     lahar_app::run(options).map_err(|error| error.to_string())
 }
 
-/// Says why there is no window.
+/// Returns the reason why there is no window.
 #[cfg(not(feature = "window"))]
 fn open_window(_view: Option<View>) -> Result<(), String> {
-    Err("this program was built without".to_owned())
+    Err("lahar was built without the feature `window`".to_owned())
 }

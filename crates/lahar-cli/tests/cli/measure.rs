@@ -124,7 +124,7 @@ fn bench_names_wrong_arguments() {
     let output = lahar(here.path(), &["bench", "--compare=no.json"]);
     code(&output, 2);
     assert!(
-        errors(&output).contains("no.json: it is not what"),
+        errors(&output).contains("no.json: not a result of"),
         "{}",
         errors(&output)
     );

@@ -90,7 +90,7 @@ fn a_finished_run_is_drawn_and_reported() {
     let drawn = names(&here.path().join("r/render"));
     assert_eq!(drawn[..3], ["000001.png", "000003.png", "video.gif"]);
 
-    assert!(errors(&output).contains("pictures by"));
+    assert!(errors(&output).contains("drawing "));
 
     code(&lahar(here.path(), &["report", "r"]), 0);
     let page = std::fs::read_to_string(here.path().join("r/report.html")).unwrap();
@@ -190,7 +190,7 @@ fn the_window_s_renderer_and_the_processor_draw_the_same_water() {
 
         let (output, picture) = draw(here.path(), name, "cpu", camera, None);
         code(&output, 0);
-        assert!(errors(&output).contains("pictures by the processor\n"));
+        assert!(errors(&output).contains("drawing on the processor\n"));
         let by_processor = picture.unwrap();
 
         let (output, _) = draw(here.path(), name, "gpu", camera, Some(NO_BACKEND));
@@ -199,12 +199,12 @@ fn the_window_s_renderer_and_the_processor_draw_the_same_water() {
         assert!(message.contains("--renderer gpu: "), "{message}");
         let (output, picture) = draw(here.path(), name, "auto", camera, Some(NO_BACKEND));
         code(&output, 0);
-        assert!(errors(&output).contains("pictures by the processor: "));
+        assert!(errors(&output).contains("drawing on the processor: "));
         assert_eq!(picture.unwrap(), by_processor);
 
         let (output, picture) = draw(here.path(), name, "auto", camera, None);
         code(&output, 0);
-        if !errors(&output).contains("pictures by the window's renderer on ") {
+        if !errors(&output).contains("drawing by the window's renderer on ") {
             continue;
         }
         let by_window = picture.unwrap();

@@ -275,7 +275,7 @@ fn a_run_is_extended_beyond_its_end() {
     let output = lahar(here, &["resume", "r", "--frames=4"]);
     code(&output, 2);
     assert!(
-        errors(&output).contains("frame 5 already"),
+        errors(&output).contains("already goes to frame 5"),
         "{}",
         errors(&output)
     );
@@ -433,7 +433,7 @@ fn a_full_disk_is_an_error_and_nothing_is_lost() {
     let output = lahar(here, &["resume", "r"]);
     code(&output, 0);
     assert!(
-        errors(&output).contains("on from frame"),
+        errors(&output).contains("resumed from frame"),
         "{}",
         errors(&output)
     );
