@@ -1,4 +1,4 @@
-"""mls-mpm88.cpp and incremental_mpm by their published steps (published_steps.py) and our scenes on the same particles."""
+"""Compares our scenes with the published steps of mls-mpm88.cpp and incremental_mpm on the same particles."""
 
 import argparse
 
@@ -16,11 +16,11 @@ def lattice(low, high, spacing):
 
 
 def start(scene, kind, seed):
-    """Particles by body. "thrown": with velocities of their own; "jittered": off their lattices by up to a quarter."""
+    """Returns particles by body. "thrown" gives each its own velocity; "jittered" moves them by up to a quarter of a cell."""
     random = np.random.default_rng(seed)
     if scene == "mls-mpm88":
-        centres = [(0.55, 0.45), (0.45, 0.65), (0.55, 0.85)]
-        bodies = {f"square-{k + 1}": np.array(centre) + random.uniform(-0.08, 0.08, (500, 2)) for k, centre in enumerate(centres)}
+        centers = [(0.55, 0.45), (0.45, 0.65), (0.55, 0.85)]
+        bodies = {f"square-{k + 1}": np.array(center) + random.uniform(-0.08, 0.08, (500, 2)) for k, center in enumerate(centers)}
         scale = 2.0
     else:
         spacing, low, high = (1.0, 24.0, 40.0) if scene.endswith("1") else (0.5, 16.0, 48.0)
@@ -50,7 +50,7 @@ def compare(program, scene, precision, kinds, steps, itself, seed):
         theirs = PROGRAMS[scene](*whole).frames(steps)
         rows += [((kind, step), lahar.differences(ours[step], theirs[step])) for step in steps]
         if itself:
-            # One rounding away, in double or in single precision.
+            # Each coordinate moves to the next number in double or in single precision.
             real = np.float64 if precision == "f64" else np.float32
             beside = np.nextafter(whole[0].astype(real), real(1e9)).astype(np.float64)
             other = PROGRAMS[scene](beside, whole[1]).frames(steps)

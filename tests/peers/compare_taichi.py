@@ -1,4 +1,4 @@
-"""Taichi's programs and our scenes on the same particles: how far they are apart, substep by substep."""
+"""Compares our scenes with Taichi's programs on the same particles, substep by substep."""
 
 import argparse
 
@@ -31,8 +31,8 @@ STARTS = ["its own", "thrown", "squeezed"]
 
 
 def start(scene, kind, seed, precision):
-    """Particles by body: places at random as the program has them; "thrown": with velocities of their own, up to
-    2 m/s; "squeezed": in boxes of two thirds of the size."""
+    """Returns particles by body, placed at random as the program does. "thrown" gives them velocities of up to 2 m/s;
+    "squeezed" puts them into boxes of two thirds of the size."""
     random = np.random.default_rng(seed)
     bodies = {}
     for name, count, low, high, velocity in BODIES[scene]:
@@ -54,7 +54,7 @@ def together(bodies):
 
 
 def reordered(frames, order):
-    """Frames of a program whose row i is particle order[i]."""
+    """Returns the frames by particle, from those of a program whose row i is particle order[i]."""
     back = np.argsort(order)
     return {step: {key: rows[back] for key, rows in frame.items()} for step, frame in frames.items()}
 
@@ -68,7 +68,7 @@ def compare(program, scene, precision, kinds, steps, itself, seed):
         theirs = Program(scene, whole, precision).frames(steps)
         ours_to_theirs += [((kind, step), lahar.differences(ours[step], theirs[step])) for step in steps]
         if itself:
-            # Each group of particles back to front: the same sums in another order.
+            # Each group of particles in reverse: the same sums in another order.
             order = np.concatenate([np.arange(len(p)) + 0 for p in [whole["position"]]])
             first = 0
             for body in bodies.values():

@@ -1,4 +1,4 @@
-"""Runs a scene of lahar on given particles, reads its frames back, and says how far they are from another program's."""
+"""Runs a scene of lahar on given particles, reads its frames, and measures their differences from another program's."""
 
 import json
 import pathlib
@@ -42,16 +42,16 @@ def run(program, scene, bodies, steps, precision="f64", settings=(), threads=1):
 
 
 def moments(position):
-    """m1 .. m4: means of the powers of all coordinates."""
+    """Returns m1 .. m4, the means of the powers of all coordinates."""
     return np.array([np.mean(position**power) for power in (1, 2, 3, 4)])
 
 
-COLUMNS = ["moments", "centre", "x rms", "x max", "v max", "J max"]
+COLUMNS = ["moments", "center", "x rms", "x max", "v max", "J max"]
 
 
 def differences(ours, theirs):
-    """Of moments m1 .. m4 (relative, the worst), centre of mass [m], positions (root mean square and worst) [m],
-    velocities (worst) [m/s], J (worst). `theirs` has position, velocity and J, rows as in ours."""
+    """Returns the differences of moments (relative, the worst), center of mass [m], positions (root mean square and worst)
+    [m], velocities (worst) [m/s] and J (worst). Both have the same particles in the same rows."""
     x, y = ours["position"], theirs["position"]
     apart = np.linalg.norm(x - y, axis=1)
     return [

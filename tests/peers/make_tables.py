@@ -1,5 +1,5 @@
-"""Writes crates/lahar-scene/tests/scene/lineage.csv: what the programs make of our scenes' own particles, for tests that run
-without them. Taichi's programs run in double precision; the others by their published steps."""
+"""Writes crates/lahar-scene/tests/scene/lineage.csv: the results of the programs on the particles of our scenes, for tests that
+run without them. Taichi's programs run in double precision; the others by their published steps."""
 
 import argparse
 import pathlib
@@ -12,7 +12,7 @@ from taichi_programs import PROGRAMS, Program
 
 TABLE = pathlib.Path(__file__).resolve().parents[2] / "crates/lahar-scene/tests/scene/lineage.csv"
 
-# Scene: substeps to look at.
+# The substeps to record, by scene.
 STEPS = {
     "mpm88": [1, 500, 800, 1200],
     "mpm99": [1, 50, 200, 500],
@@ -29,11 +29,11 @@ STEPS = {
 
 
 def row(frame):
-    """Moments m1 .. m4 of the coordinates, centre of mass [m], root mean square of the speed [m/s], range of J."""
+    """Returns moments m1 .. m4 of the coordinates, center of mass [m], root mean square of the speed [m/s] and range of J."""
     x, v, j = frame["position"], frame["velocity"], frame["J"]
-    centre = [*x.mean(axis=0), 0.0][:3]
+    center = [*x.mean(axis=0), 0.0][:3]
     speed = np.sqrt(np.mean(np.sum(v**2, axis=1)))
-    return [*lahar.moments(x), *centre, speed, np.min(j), np.max(j)]
+    return [*lahar.moments(x), *center, speed, np.min(j), np.max(j)]
 
 
 def main():
@@ -43,7 +43,7 @@ def main():
     lines = [
         "# Made by tests/peers/make_tables.py: the programs on the particles of our scenes, in double precision. Taichi's",
         "# examples of the wheel 1.7.4; mls-mpm88.cpp and incremental_mpm by their published steps. m1 .. m4: means of the",
-        "# powers of all coordinates; centre of mass; root mean square of the speed; smallest and largest J.",
+        "# powers of all coordinates; center of mass; root mean square of the speed; smallest and largest J.",
         "scene,step,m1,m2,m3,m4,x,y,z,speed,J_min,J_max",
     ]
     for scene, steps in STEPS.items():

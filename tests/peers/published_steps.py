@@ -1,5 +1,5 @@
-"""The published steps of mls-mpm88.cpp and of incremental_mpm's three stages, in NumPy: an oracle of our own for
-programs that cannot be run here. Double precision, all particles at once, one dense grid.
+"""The published steps of mls-mpm88.cpp and of incremental_mpm's three stages, in NumPy: an oracle for programs that cannot
+be run here. It computes in double precision, with all particles at once, on one dense grid.
 
 Grids are [n, n] with node i at x = (i + offset) dx; weights are quadratic B-splines over 3 x 3 nodes.
 """
@@ -8,7 +8,7 @@ import numpy as np
 
 
 def stencil(x, dx, offset):
-    """Nodes [p, 9, 2], weights [p, 9] and lever arms [p, 9, 2] of particles at x."""
+    """Returns nodes [p, 9, 2], weights [p, 9] and lever arms [p, 9, 2] of particles at x."""
     base = np.floor(x / dx - offset - 0.5).astype(int)
     fx = x / dx - offset - base
     w = np.stack([0.5 * (1.5 - fx) ** 2, 0.75 - (fx - 1.0) ** 2, 0.5 * (fx - 0.5) ** 2], axis=1)
@@ -19,18 +19,19 @@ def stencil(x, dx, offset):
 
 
 def to_grid(shape, nodes, values):
-    """Sums values [p, 9, ...] over particles."""
+    """Returns the grid with the sums of values [p, 9, ...] over particles."""
     grid = np.zeros((*shape, *values.shape[2:]))
     np.add.at(grid, (nodes[..., 0], nodes[..., 1]), values)
     return grid
 
 
 def around(grid, nodes, weights):
+    """Returns the weighted sums of a grid's values over the nodes of each particle."""
     return np.einsum("pk,pk...->p...", weights, grid[nodes[..., 0], nodes[..., 1]])
 
 
 class Steps:
-    """What all of them share: P2G with an affine momentum, grid, G2P. Subclasses are the programs."""
+    """The steps that all programs share: P2G with an affine momentum, grid, G2P. Each program is a subclass."""
 
     offset = 0.0
 
@@ -44,7 +45,7 @@ class Steps:
         self.j = None
 
     def p2g(self, q):
-        """q: what a particle adds to its momentum per lever arm [p, 2, 2]."""
+        """Sums particles to the grid. `q` is what a particle adds to its momentum per lever arm [p, 2, 2]."""
         self.nodes, self.w, self.r = stencil(self.x, self.dx, self.offset)
         self.mass = to_grid(self.shape, self.nodes, self.w * self.m[:, None])
         momentum = (self.m[:, None] * self.v)[:, None, :] + np.einsum("pab,pkb->pka", q, self.r)
@@ -73,7 +74,7 @@ class Steps:
 
 
 class MlsMpm88(Steps):
-    """mls-mpm88.cpp: snow; walls sticky at 0.05, the floor lets go."""
+    """mls-mpm88.cpp: snow between sticky walls at 0.05, on a floor that lets go."""
 
     n, dt, gravity = 80, 1e-4, -200.0
     dx = 1.0 / n
@@ -91,7 +92,7 @@ class MlsMpm88(Steps):
         self.p2g(self.m[:, None, None] * self.c - self.dt * 4 / self.dx**2 * stress)
         at = np.arange(self.n + 1) / self.n
         x, y = np.meshgrid(at, at, indexing="ij")
-        # 0.95 is a node; in single precision 1 - 0.05 is 0.95, in double it must be made so.
+        # 0.95 is a node. In single precision 1 - 0.05 equals it; in double precision the tolerance makes it so.
         self.grid[(x < 0.05) | (x > 1 - 0.05 + 1e-9) | (y > 1 - 0.05 + 1e-9)] = 0.0
         self.grid[..., 1] = np.where(y < 0.05, np.maximum(self.grid[..., 1], 0.0), self.grid[..., 1])
         self.g2p()
@@ -103,7 +104,7 @@ class MlsMpm88(Steps):
 
 
 class Incremental(Steps):
-    """What the three stages share: cells of size 1 with their centres as nodes, slip walls of two cells, a clamp."""
+    """The steps that the three stages share: cells of size 1 with their centers as nodes, slip walls of two cells, a clamp."""
 
     offset, dx = 0.5, 1.0
     shape = (64, 64)

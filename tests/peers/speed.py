@@ -1,7 +1,7 @@
-"""How fast others compute the benchmark's dam break, in turn with `lahar bench`: medians and ratios.
+"""Measures how fast other programs compute the benchmark's dam break, in turn with `lahar bench`: medians and ratios.
 
-Each round runs every program once, so that a machine whose speed drifts drifts for all. Absolute figures are of this
-machine and this hour; the ratios are what to compare.
+Each round runs every program once, so that a drift of the machine's speed affects all of them. Absolute figures hold for
+this machine at this time only; compare the ratios.
 """
 
 import argparse
@@ -13,11 +13,11 @@ import sys
 
 PEERS = {
     "taichi": "Taichi, as its examples are written",
-    "taichi-tuned": "Taichi, tuned (sorted; serial or coloured scatter)",
+    "taichi-tuned": "Taichi, tuned (sorted; serial or colored scatter)",
     "warp": "Warp",
-    "sparkl": "sparkl (one line mended)",
+    "sparkl": "sparkl (one line corrected)",
 }
-# Particles a cell, and the part of a cubic metre (square metre in 2D) that the column fills.
+# Dimensions, particles per cell, and the part of a cubic meter (square meter in 2D) that the column fills.
 SCENES = {"dam-3d": (3, 8, 0.25), "dam-2d": (2, 4, 0.5)}
 
 
@@ -52,7 +52,7 @@ def main():
 
 
 def compare(args, case, threads):
-    """Rates of all programs on one scene, a number a round."""
+    """Returns the rates of all programs on one scene, one number per round."""
     dim, ppc, part = SCENES[case]
     cells = round((args.particles / (ppc * part)) ** (1 / dim))
     shown = run([args.lahar, "show", f"bench-{case}", "--set", f"dx={1 / cells!r}", "--json"])
@@ -76,7 +76,7 @@ def compare(args, case, threads):
 
 
 def worker(job):
-    """One program, once; prints its rates."""
+    """Runs one program once and prints its rate."""
     if job["name"] == "sparkl":
         import speed_sparkl
 
@@ -98,7 +98,7 @@ def worker(job):
 
 
 def run(command):
-    """The JSON that a command prints: all of it, or its last line."""
+    """Returns the JSON that a command prints: its whole output, or the last line."""
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)}\n{done.stderr}")

@@ -1,4 +1,4 @@
-"""The benchmark's column of fluid as other programs are given it: the same particles a cell, shape, motion and time step."""
+"""The benchmark's column of fluid for other programs: the same particles per cell, shape, motion and time step."""
 
 import time
 
@@ -9,10 +9,10 @@ PAD = 3
 
 
 class Scene:
-    """A column of fluid that collapses in a box, in `dim` dimensions with `cells` cells a metre.
+    """A column of fluid that collapses in a box, in `dim` dimensions with `cells` cells per meter.
 
-    The scenes of crates/lahar-scene/scenes/bench: the box is 1 m a side (2 m by 1 m in 2D), the column fills the half of
-    each side (not of the depth in 3D); linear J-based pressure, quadratic kernel, APIC, f32.
+    The scenes of crates/lahar-scene/scenes/bench: the box has sides of 1 m (2 m by 1 m in 2D), and the column
+    fills half of each side but the depth. Pressure is linear in J; quadratic kernel, APIC, f32.
     """
 
     def __init__(self, dim, cells, sound_speed, dt):
@@ -32,7 +32,7 @@ class Scene:
         self.velocity[:, 0] = self.rate * x[:, 0]
         self.velocity[:, 1] = -self.rate * x[:, 1]
         self.position = x + PAD * self.dx
-        # Cell by cell, as a program that never sorts is best given them.
+        # Cell by cell, which is best for a program that never sorts.
         cell = places // 2
         order = np.lexsort(cell.T[::-1])
         self.position = self.position[order].astype(np.float32)
@@ -41,7 +41,7 @@ class Scene:
 
 
 def measure(scene, substeps, wait, state, seconds):
-    """Particle-steps per second of a run of about so many seconds, after as much to warm up."""
+    """Returns the particle-steps per second of a run of about `seconds`, after a warm-up of the same length."""
     substeps(2)
     wait()
     began = time.perf_counter()
@@ -54,7 +54,7 @@ def measure(scene, substeps, wait, state, seconds):
     substeps(steps)
     wait()
     rate = scene.count * steps / (time.perf_counter() - began)
-    # What flies apart is not worth its speed.
+    # The speed of a run that has blown up means nothing.
     x, v, J = state()
-    assert np.isfinite(x).all() and np.abs(v).max() < 50 and np.abs(J.mean() - 1) < 0.1, "the fluid is no longer one"
+    assert np.isfinite(x).all() and np.abs(v).max() < 50 and np.abs(J.mean() - 1) < 0.1, "the fluid has blown up"
     return rate

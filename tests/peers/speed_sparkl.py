@@ -1,6 +1,6 @@
-"""Builds sparkl 0.4.0 with the line mended that makes it panic, and the program beside it in sparkl/.
+"""Builds sparkl 0.4.0 with one line corrected, without which it panics, and the program in sparkl/ that runs it.
 
-As published, `SpGrid::new` maps `2 ^ 30` bytes for its grid, which is an exclusive or: 28 bytes, and no node has room there.
+As published, `SpGrid::new` maps `2 ^ 30` bytes for its grid, which is an exclusive or and gives 28 bytes, too few for a node.
 """
 
 import json
@@ -15,29 +15,29 @@ WRONG, RIGHT = "MmapMut::map_anon(2 ^ 30)", "MmapMut::map_anon(1 << 30)"
 
 
 def build():
-    """The program's path."""
-    mended = OUT / "sparkl3d"
-    if not mended.exists():
-        mend(published(), mended)
+    """Builds the program and returns its path."""
+    corrected = OUT / "sparkl3d"
+    if not corrected.exists():
+        correct(published(), corrected)
     command = ["cargo", "build", "--release", "--manifest-path", HERE / "sparkl" / "Cargo.toml", "--target-dir", OUT / "sparkl"]
     run([*command, "--quiet"])
     return OUT / "sparkl" / "release" / "peer-sparkl"
 
 
 def published():
-    """Where cargo has put sparkl3d as published."""
+    """Returns the folder of sparkl3d as published, which cargo downloads."""
     project = OUT / "sparkl-fetch"
     (project / "src").mkdir(parents=True, exist_ok=True)
     (project / "src" / "lib.rs").touch()
     manifest = project / "Cargo.toml"
     manifest.write_text('[package]\nname = "fetch"\nversion = "0.1.0"\n[workspace]\n[dependencies]\nsparkl3d = "=0.4.0"\n')
-    told = json.loads(run(["cargo", "metadata", "--format-version", "1", "--manifest-path", manifest]))
-    paths = (package["manifest_path"] for package in told["packages"] if package["name"] == "sparkl3d")
+    metadata = json.loads(run(["cargo", "metadata", "--format-version", "1", "--manifest-path", manifest]))
+    paths = (package["manifest_path"] for package in metadata["packages"] if package["name"] == "sparkl3d")
     return pathlib.Path(next(paths)).parent
 
 
-def mend(source, target):
-    """Copies the crate, with one line changed."""
+def correct(source, target):
+    """Copies the crate and corrects the line."""
     shutil.copytree(source, target)
     file = target / "src" / "geometry" / "sp_grid.rs"
     text = file.read_text()
@@ -55,6 +55,6 @@ def run(command):
 
 
 def measure(job):
-    """Particle-steps per second of one run."""
+    """Returns the particle-steps per second of one run."""
     numbers = (job["cells"], job["threads"], job["seconds"], job["sound_speed"], job["dt"])
     return json.loads(run([build(), *numbers]))

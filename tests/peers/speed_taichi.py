@@ -1,14 +1,14 @@
 """MLS-MPM in Taichi on the CPU: as its examples are written, and tuned.
 
-as written: one loop over particles that adds to the nodes by atomics, velocity and mass in two fields.
-tuned: particles sorted by block and cell now and then; velocity and mass in one vector, on blocks of nodes; on one thread a
-serial scatter, on several one by blocks in colours, without atomics.
+As written: one loop over particles adds to the nodes by atomics; velocity and mass are two fields.
+Tuned: particles are sorted by block and cell every few substeps; velocity and mass are one vector, on blocks of nodes; the
+scatter is serial on one thread and goes over colored blocks on several, without atomics.
 """
 
 import taichi as ti
 
 BLOCK = 4
-# Substeps between two sorts: particles move less than a cell in them.
+# Substeps between two sorts, in which particles move less than a cell.
 SORT_EVERY = 20
 
 
@@ -114,7 +114,7 @@ def make(scene, tuned, threads):
     x2, v2 = ti.Vector.field(D, ti.f32, n), ti.Vector.field(D, ti.f32, n)
     C2, J2 = ti.Matrix.field(D, D, ti.f32, n), ti.field(ti.f32, n)
     cell_of, first, next_free = ti.field(ti.i32, n), ti.field(ti.i32, cells + 1), ti.field(ti.i32, cells + 1)
-    of_colour, in_colour = ti.field(ti.i32, (2**D, cells // a_block)), ti.field(ti.i32, 2**D)
+    of_color, in_color = ti.field(ti.i32, (2**D, cells // a_block)), ti.field(ti.i32, 2**D)
 
     @ti.func
     def cell_number(p):
@@ -135,8 +135,8 @@ def make(scene, tuned, threads):
 
     @ti.kernel
     def find_places():
-        for c in in_colour:
-            in_colour[c] = 0
+        for c in in_color:
+            in_color[c] = 0
         ti.loop_config(serialize=True)
         for once in range(1):
             total = 0
@@ -147,13 +147,13 @@ def make(scene, tuned, threads):
                     total += next_free[c]
                     next_free[c] = first[c]
                 if total > before:
-                    colour, rest = 0, b
+                    color, rest = 0, b
                     for i in ti.static(range(D)):
                         side = ti.static(blocks[D - 1 - i])
-                        colour = 2 * colour + rest % side % 2
+                        color = 2 * color + rest % side % 2
                         rest //= side
-                    of_colour[colour, in_colour[colour]] = b
-                    in_colour[colour] += 1
+                    of_color[color, in_color[color]] = b
+                    in_color[color] += 1
             first[cells] = total + 0 * once
 
     @ti.kernel
@@ -190,10 +190,10 @@ def make(scene, tuned, threads):
             spread(p)
 
     @ti.kernel
-    def scatter_colour(colour: ti.i32):
+    def scatter_color(color: ti.i32):
         ti.loop_config(block_dim=1)
-        for k in range(in_colour[colour]):
-            b = of_colour[colour, k]
+        for k in range(in_color[color]):
+            b = of_color[color, k]
             for p in range(first[b * a_block], first[(b + 1) * a_block]):
                 spread(p)
 
@@ -222,21 +222,21 @@ def make(scene, tuned, threads):
                 new_B += u.outer_product(offset - f)
             move(p, new_v, 4.0 * inv_dx * new_B)
 
-    taken = [0]
+    substeps_done = [0]
 
     def substeps(count):
         for _ in range(count):
-            if taken[0] % SORT_EVERY == 0:
+            if substeps_done[0] % SORT_EVERY == 0:
                 count_cells()
                 find_places()
                 put_in_place()
-            taken[0] += 1
+            substeps_done[0] += 1
             clear()
             if threads == 1:
                 scatter_serial()
             else:
-                for colour in range(2**D):
-                    scatter_colour(colour)
+                for color in range(2**D):
+                    scatter_color(color)
             update()
             gather()
 

@@ -1,7 +1,7 @@
-"""Taichi's own example programs, from the wheel, without their windows: started on given particles, stepped, read.
+"""Taichi's own example programs from its wheel, without their windows: they start on given particles, step, and are read.
 
-Nothing of them is copied: a program's file is loaded as it is (but for its choice of resolution, where asked), with
-`ti.init` and the windows replaced by ones that do nothing.
+They are not copied. A program's file is loaded as it is, but for its resolution if another is asked for, with `ti.init` and
+the windows replaced by dummies.
 """
 
 import importlib.util
@@ -16,7 +16,7 @@ EXAMPLES = pathlib.Path(ti.__file__).parent / "examples"
 
 
 class Nothing:
-    """Stands for a window: whatever it is asked for is there and does nothing; it is closed."""
+    """A dummy for a window: every attribute exists and does nothing, and the window counts as closed."""
 
     running = False
 
@@ -29,7 +29,7 @@ class Nothing:
     def __bool__(self):
         return True
 
-    # The one event of a closed window is that it is being closed.
+    # The only event of a closed window is its closing.
     @property
     def event(self):
         closing = Nothing()
@@ -38,8 +38,8 @@ class Nothing:
 
 
 def exact_svd():
-    """Taichi's 2 x 2 singular value decomposition drops what is off the diagonal of the stretch where that is below 1e-5.
-    From now on it drops what is below 1e-15."""
+    """Makes Taichi's 2 x 2 singular value decomposition exact: it drops off-diagonal entries of the stretch below 1e-15
+    instead of below 1e-5."""
     file = pathlib.Path(ti.__file__).parent / "_funcs.py"
     text = file.read_text()
     assert text.count("< 1e-5") == 1
@@ -52,7 +52,7 @@ def exact_svd():
 
 
 def load(path, precision, replace=None):
-    """The module of an example, windows and choice of machine taken from it."""
+    """Returns the module of an example, without its windows and its choice of a machine."""
     ti.init(arch=ti.cpu, default_fp=ti.f64 if precision == "f64" else ti.f32, cpu_max_num_threads=1, log_level=ti.ERROR)
     text = (EXAMPLES / path).read_text()
     if replace:

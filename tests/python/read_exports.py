@@ -1,12 +1,11 @@
-"""Reads the frames of a run by programs that are not ours and compares them with NumPy's arrays of the same frames,
-bit by bit:
+"""Reads the frames of a run with other programs and compares them bit by bit with the NumPy arrays of the same frames:
 
     python3 -m venv venv && venv/bin/pip install -r tests/python/requirements.txt
     lahar run dam-break --frames 2 --format npz,vtk,ply,bgeo -o RUN
     venv/bin/python tests/python/read_exports.py RUN
 
-.vtp by VTK, the .pvd by its XML, .ply by plyfile, meshio and trimesh; .bgeo: positions by splashsurf where there are
-no matrices, which it does not know, and all attributes by NumPy's records, laid out as the format says.
+VTK reads .vtp; plyfile, meshio and trimesh read .ply; the .pvd is read as XML. splashsurf reads the positions of .bgeo, if
+the frame has no matrices, which it does not support; all attributes are read by NumPy records, laid out as the format says.
 """
 
 import pathlib
@@ -27,7 +26,7 @@ LETTERS = {"velocity": "v", "affine": "C", "deformation_gradient": "F"}
 
 
 def same(name, ours, theirs, dtype=None):
-    """Equal to the bit, also where they are no numbers."""
+    """Checks that two arrays have the same bits, NaN included."""
     ours = np.ascontiguousarray(ours if dtype is None else ours.astype(dtype))
     theirs = np.ascontiguousarray(theirs)
     assert ours.shape == theirs.shape, (name, ours.shape, theirs.shape)
@@ -36,7 +35,7 @@ def same(name, ours, theirs, dtype=None):
 
 
 def in_space(name, values):
-    """Filled up to three dimensions."""
+    """Returns the values filled up to three dimensions."""
     n, d = len(values), values.shape[-1]
     if name in VECTORS or name == "position":
         full = np.zeros((n, 3), values.dtype)
@@ -53,6 +52,7 @@ def in_space(name, values):
 
 
 def read_vtk(path, frame, fields):
+    """Compares a .vtp file with a frame."""
     reader = vtkXMLPolyDataReader()
     reader.SetFileName(str(path))
     reader.Update()
@@ -70,6 +70,7 @@ def read_vtk(path, frame, fields):
 
 
 def read_ply(path, frame, fields):
+    """Compares a .ply file with a frame."""
     d = frame["position"].shape[1]
     columns = {axis: in_space("position", frame["position"])[:, i] for i, axis in enumerate("xyz")}
     for name in fields:
@@ -93,6 +94,7 @@ def read_ply(path, frame, fields):
 
 
 def read_bgeo(path, frame, fields):
+    """Compares a .bgeo file with a frame."""
     n = len(frame["position"])
     position = in_space("position", frame["position"]).astype("<f4")
     if not set(MATRICES) & set(fields):

@@ -1,12 +1,12 @@
-"""Reads the meshes that `lahar mesh` has made by trimesh, meshio and VTK: closed, with one side outside, and of the
-volume that the run's particles say they fill.
+"""Reads the meshes of `lahar mesh` with trimesh, meshio and VTK. Checks that they are closed, that their triangles face
+outward, and that they have the volume of the run's particles.
 
     python3 -m venv venv && venv/bin/pip install -r tests/python/requirements.txt
     lahar run SCENE --frames 2 --format npz -o RUN
     lahar mesh RUN --format ply,obj,vtk
     venv/bin/python tests/python/read_meshes.py RUN 0.02
 
-The last number: by how much the volume may be off.
+The last argument is the largest relative error of the volume.
 """
 
 import json
@@ -30,14 +30,14 @@ for number, name in enumerate(materials):
     for path in paths:
         with np.load(run / "frames" / f"{path.stem}.npz") as frame:
             own = frame["material"] == number
-            told = (frame["volume0"][own].astype(float) * frame["J"][own]).sum()
+            volume = (frame["volume0"][own].astype(float) * frame["J"][own]).sum()
             assert listed[f"{name}/{path.stem}.vtp"] == frame["time"]
-            middle = frame["position"][own].mean(axis=0)
+            center = frame["position"][own].mean(axis=0)
         mesh = trimesh.load(path, process=False)
         assert mesh.is_watertight and mesh.is_winding_consistent, path
-        off = mesh.volume / told - 1
+        off = mesh.volume / volume - 1
         assert abs(off) <= most, (path, off)
-        assert np.linalg.norm(mesh.center_mass - middle) < 0.02 * told ** (1 / 3), path
+        assert np.linalg.norm(mesh.center_mass - center) < 0.02 * volume ** (1 / 3), path
         obj = meshio.read(path.with_suffix(".obj"))
         assert np.array_equal(obj.points.astype(np.float32), mesh.vertices.astype(np.float32))
         assert np.array_equal(obj.cells_dict["triangle"], mesh.faces)

@@ -1,4 +1,4 @@
-"""Reads the frames of a run with NumPy and checks what they promise. By hand, in an environment with numpy:
+"""Reads the frames of a run with NumPy and checks shapes, types, order and totals. It needs numpy only:
 
     python3 -m venv venv && venv/bin/pip install numpy
     lahar run dam-break --frames 5 --format npz -o RUN
@@ -40,7 +40,7 @@ for index, (path, row) in enumerate(zip(frames, rows)):
         assert abs(mass.sum() - float(row["mass"])) < 1e-6 * mass.sum()
         momentum = (mass[:, None] * frame["velocity"]).sum(axis=0)
         scale = (mass * np.linalg.norm(frame["velocity"], axis=1)).sum() + 1e-300
-        told = np.array([float(row["momentum_" + axis]) for axis in "xyz"[:d]])
-        assert np.abs(momentum - told).max() < 1e-5 * scale + 1e-12, (momentum, told)
+        recorded = np.array([float(row["momentum_" + axis]) for axis in "xyz"[:d]])
+        assert np.abs(momentum - recorded).max() < 1e-5 * scale + 1e-12, (momentum, recorded)
 
 print(f"{len(frames)} frames of {n} particles read: fields {', '.join(np.load(frames[-1]).files)}")

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Kills runs at many moments by SIGKILL, goes on with `lahar resume`, and compares every file with an unbroken run's.
+"""Kills runs by SIGKILL at many moments, resumes them, and compares every file with that of an unbroken run.
 
     tests/reliability/kill.py path/to/lahar [--kills 50] [--seed 1] [--keep]
 
-Scenes in 2D and 3D, on 1 and 2 threads, several materials, probes, a film, checkpoints every third frame. Some kills are aimed:
-before anything is there, while a file has its temporary name (a frame, a checkpoint, run.json, start.json), right after a
-checkpoint; the others come after a random time. A resumed run may be killed again. Python's standard library only.
+The scenes are in 2D and 3D with several materials, probes, a film and a checkpoint every third frame, on 1 and 2 threads.
+Some kills are aimed: before the folder has any file, while a file (a frame, a checkpoint, run.json, start.json) has its
+temporary name, and right after a checkpoint. The others come after a random time. A resumed run may be killed again. The
+script needs Python's standard library only.
 """
 
 import argparse
@@ -70,7 +71,7 @@ checkpoint_every = 3
 
 
 def scene(folder, dimension):
-    """A scene with its list of particles; its path."""
+    """Writes a scene with its list of particles and returns its path."""
     folder.mkdir()
     flat = dimension == 2
 
@@ -88,7 +89,7 @@ def scene(folder, dimension):
         ball=vector(0.6, 0.3, 0.2),
         throw=vector(-1.0, 0.5, 0.0),
         gauge=vector(1.0, 0.05, 0.2),
-        # Towards where each particle started: that is state, too.
+        # Toward the starting position of each particle, which is part of the state.
         field='["4*(X-x)", "0"]' if flat else '["4*(X-x)", "0", "0"]',
     )
     (folder / "kill.toml").write_text(text)
@@ -102,7 +103,7 @@ def scene(folder, dimension):
 
 
 def files(run):
-    """What must be the same: everything but checkpoints/ and run.json."""
+    """Returns the files that must be the same: all but checkpoints/ and run.json."""
     found = [path.relative_to(run) for path in run.rglob("*") if path.is_file()]
     return sorted(path for path in found if path.parts[0] != "checkpoints" and path != pathlib.Path("run.json"))
 
@@ -111,12 +112,13 @@ CLOCK = ["seconds", "startup_seconds", "phase_seconds", "particle_steps_per_seco
 
 
 def record(run):
-    """run.json without what depends on the clock."""
+    """Returns run.json without the entries that depend on the clock."""
     whole = json.loads((run / "run.json").read_text())
     return {key: value for key, value in whole.items() if key not in CLOCK}
 
 
 def differences(one, other):
+    """Returns the names of files that differ between two runs."""
     if files(one) != files(other):
         return [f"files: {sorted(set(files(one)) ^ set(files(other)))}"]
     found = [str(path) for path in files(one) if not filecmp.cmp(one / path, other / path, shallow=False)]
@@ -126,7 +128,7 @@ def differences(one, other):
 
 
 def partial(run, where):
-    """Whether a file in `where` is being written."""
+    """Returns true while a file in the folder `where` is being written."""
     try:
         return any(name.endswith(".partial") for name in os.listdir(run / where))
     except FileNotFoundError:
@@ -134,6 +136,7 @@ def partial(run, where):
 
 
 def checkpoints(run):
+    """Returns the names of the checkpoints of a run."""
     try:
         return [name for name in os.listdir(run / "checkpoints") if name.endswith(".checkpoint")]
     except FileNotFoundError:
@@ -141,7 +144,7 @@ def checkpoints(run):
 
 
 AIMS = {
-    "before anything is there": lambda run: run.exists(),
+    "before the first file": lambda run: run.exists(),
     "while start.json is written": lambda run: partial(run, "checkpoints") and not (run / "run.json").exists(),
     "while run.json is written": lambda run: partial(run, "."),
     "before the first checkpoint": lambda run: (run / "frames").exists(),
@@ -154,7 +157,7 @@ AIMS = {
 
 
 def start(command, run, wanted):
-    """Runs `command` until `wanted` says so, then kills it; whether it was killed before its end."""
+    """Runs `command` and kills it as soon as `wanted(run)` is true. Returns false if it ended before."""
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     while process.poll() is None:
         if wanted(run):
@@ -168,6 +171,7 @@ def start(command, run, wanted):
 
 
 def after(seconds):
+    """Returns a condition that becomes true after some seconds."""
     end = time.monotonic() + seconds
 
     def wanted(_):
@@ -195,7 +199,7 @@ def main():
         whole = root / f"whole-{dimension}d"
         began = time.monotonic()
         if start([lahar, "run", path, "-o", whole, "--threads", "1"], whole, lambda _: False):
-            sys.exit("nobody killed it")
+            sys.exit("an unbroken run was killed")
         cases.append((dimension, path, whole, time.monotonic() - began))
 
     kills, resumed, hit, wrong = 0, 0, {}, []
@@ -205,7 +209,7 @@ def main():
         dimension, path, whole, seconds = cases[number % 2]
         threads = str(1 + number // 2 % 2)
         run = root / f"run-{number}"
-        # Every other run is first killed at a moment that is aimed for, in turn.
+        # Every other run is first killed at an aimed moment, in turn.
         aim = aims[number // 2 % len(aims)] if number % 4 < 2 else "at random"
         wanted = AIMS.get(aim) or after(chance.uniform(0.0, seconds))
         story = []
@@ -219,7 +223,7 @@ def main():
                 resumed += 1
                 command = [lahar, "resume", run, "--threads", chance.choice("12")]
             aim = "at random"
-            # Killed again, one time in three.
+            # One run in three is killed again.
             again = chance.random() < 0.33 and kills < arguments.kills
             wanted = after(chance.uniform(0.0, seconds)) if again else lambda _: False
         found = differences(whole, run)
@@ -233,7 +237,7 @@ def main():
 
     for aim, count in sorted(hit.items()):
         print(f"{count:4} killed {aim}")
-    print(f"{kills} kills in {number} runs, {resumed} of them resumed: {len(wrong)} runs differ from the unbroken one")
+    print(f"{kills} kills in {number} runs, {resumed} resumes: {len(wrong)} runs differ from the unbroken one")
     if not arguments.keep and not wrong:
         shutil.rmtree(root)
     sys.exit(1 if wrong else 0)

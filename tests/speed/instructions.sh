@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# How many instructions a particle and substep takes, counted by callgrind: the same on a busy machine as on an
-# idle one. Fails if a scene takes 3 % more than tests/speed/instructions.txt says; asks for a new file if one
-# takes 3 % less. With LAHAR_UPDATE=1 it writes that file.
+# Counts the instructions per particle and substep with callgrind, whose counts do not depend on the load of the machine.
+# Fails if a scene takes 3 % more than tests/speed/instructions.txt says, and asks for a new file if one takes 3 % less.
+# With LAHAR_UPDATE=1 it writes that file.
 #
 #   tests/speed/instructions.sh [PROGRAM]     target/release/lahar if not given
 #
-# One thread, small scenes in motion, AVX2 and the portable set (valgrind has no AVX-512, and older ones lack some
-# of AVX2: then that row is left out, and said so). Each runs twice, for a short frame and for a long one; what
-# the long one takes more is substeps and nothing else.
+# Small scenes in motion run on one thread, with AVX2 and the portable instruction set. Valgrind has no AVX-512, and an
+# older one may lack an instruction of AVX2: that row is then left out with a message. Each scene runs twice, for a short
+# and for a long frame; the difference is due to substeps alone.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 lahar=$(realpath "${1:-$root/target/release/lahar}")
@@ -17,7 +17,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cd "$scratch"
 
-# The instructions and the particle-steps of a frame; 2 if valgrind does not know an instruction.
+# Prints the instructions and the particle-steps of a frame; returns 2 if valgrind does not know an instruction.
 count() { # scene dx set frame_rate
     if ! valgrind --tool=callgrind --callgrind-out-file=/dev/null "$lahar" run "$1" --set "dx=$2" --isa "$3" \
         --set "frame_rate=$4" --frames 1 --format none --threads 1 -o run --overwrite >/dev/null 2>log; then
@@ -29,7 +29,7 @@ count() { # scene dx set frame_rate
     awk -F'[:, ]+' '/"particle_steps"/ { print $3 }' run/run.json
 }
 
-# Instructions a particle and substep, as a line of the file.
+# Prints the instructions per particle and substep as a line of the file.
 measure() { # scene dx set
     local short long
     if short=$(count "$1" "$2" "$3" 4000) && long=$(count "$1" "$2" "$3" 20); then
@@ -50,7 +50,7 @@ done >found
 
 if [ -n "${LAHAR_UPDATE:-}" ]; then
     {
-        echo "# Instructions a particle and substep, by tests/speed/instructions.sh with LAHAR_UPDATE=1."
+        echo "# Instructions per particle and substep, by tests/speed/instructions.sh with LAHAR_UPDATE=1."
         grep -v unknown found
     } >"$committed"
 fi
@@ -61,12 +61,12 @@ awk '
     !(name in before) { print name, $3, "is not in the file"; bad = 1; next }
     {
         ratio = $3 / before[name]
-        printf "%s %8.1f instructions a particle and substep, %.3f of what is committed\n", name, $3, ratio
+        printf "%s %8.1f instructions per particle and substep, %.3f of the committed count\n", name, $3, ratio
         if (ratio > 1.03) bad = 1
         if (ratio < 0.97) better = 1
     }
     END {
-        if (bad) print "3 % more than committed: if it is worth it, commit new counts by LAHAR_UPDATE=1 tests/speed/instructions.sh"
-        else if (better) print "3 % less: commit new counts, by LAHAR_UPDATE=1 tests/speed/instructions.sh"
+        if (bad) print "3 % more than committed: if the gain is worth it, commit new counts by LAHAR_UPDATE=1 tests/speed/instructions.sh"
+        else if (better) print "3 % less than committed: commit new counts by LAHAR_UPDATE=1 tests/speed/instructions.sh"
         exit bad
     }' "$committed" found

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What each remedy of the default fluid does to the cases of water: the table of docs/water.md.
+"""Prints the table of docs/water.md: the errors of the water cases with each remedy of the default fluid left out.
 
     cargo build --release && python3 tests/validation/remedies.py target/release/lahar
 
@@ -26,7 +26,7 @@ CASES = {
     "D4": "d3-wall-impact",
 }
 
-# MATERIAL and BODY stand for the names that the case's scene has.
+# MATERIAL and BODY stand for the names in the case's scene.
 VARIANTS = {
     "default": [],
     "without (7i)": ["materials.MATERIAL.volume_correction=0"],
@@ -40,7 +40,7 @@ VARIANTS = {
 
 
 def findings(program, case, settings):
-    """What `lahar validate` finds, with these keys set."""
+    """Returns the findings of `lahar validate` with these keys set."""
     text = (SCENES / f"{CASES[case]}.toml").read_text()
     material = re.search(r"^\[materials\.(\S+)\]", text, re.M).group(1)
     body = re.search(r"^\[\[bodies\]\]\s*\nname = \"(\S+)\"", text, re.M).group(1)
@@ -56,6 +56,7 @@ def findings(program, case, settings):
 
 
 def shown(row):
+    """Returns a cell of the table, in bold if the error meets its target."""
     if row is None:
         return "-"
     error = row["error"]

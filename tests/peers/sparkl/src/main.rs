@@ -1,7 +1,7 @@
-//! How fast sparkl computes the benchmark's column of fluid: prints particle-steps per second.
+//! Measures how fast sparkl computes the benchmark's column of fluid, and prints particle-steps per second.
 //!
-//! The scene is that of speed_scene.py: 8 particles a cell, jittered, in motion, f32, quadratic kernel, APIC, pressure
-//! from J, walls that let slip.
+//! The scene is that of speed_scene.py: 8 jittered particles per cell, in motion, f32, quadratic kernel, APIC, pressure from
+//! J, slip walls.
 
 use sparkl3d::na::{Point3, Vector3};
 use sparkl3d::pipelines::MpmPipeline;
@@ -16,7 +16,7 @@ use std::time::Instant;
 const PAD: f32 = 3.0;
 const DENSITY: f32 = 1000.0;
 const GRAVITY: Vector3<f32> = Vector3::new(0.0, -9.81, 0.0);
-/// Of the start's stretching flow [1/s].
+/// Rate of the stretching flow at the start [1/s].
 const RATE: f32 = 5.0;
 
 fn main() {
@@ -59,7 +59,7 @@ fn main() {
     for axis in 0..3 {
         for (at, sign) in [(low, 1.0), (high, -1.0)] {
             if axis == 1 && sign < 0.0 {
-                continue; // no lid: nothing reaches it
+                continue; // there is no lid, since no particle reaches it
             }
             let mut normal = Vector3::zeros();
             normal[axis] = sign;
@@ -102,9 +102,9 @@ fn main() {
     substeps(2);
     let steps = (seconds * 4.0 / substeps(4)).round().max(4.0) as usize;
     substeps(steps);
-    let taken = substeps(steps);
+    let time = substeps(steps);
 
-    // What flies apart is not worth its speed.
+    // The speed of a run that has blown up means nothing.
     let count = particles.len();
     let mean = particles
         .iter()
@@ -124,7 +124,7 @@ fn main() {
         fastest < 50.0 && (mean - 1.0).abs() < 0.1,
         "the fluid is no longer one: {fastest} m/s, J {mean}"
     );
-    println!("{}", count as f64 * steps as f64 / taken);
+    println!("{}", count as f64 * steps as f64 / time);
 }
 
 /// Numbers from 0 to 1 by a linear congruence.
