@@ -6,16 +6,17 @@ use std::sync::Arc;
 
 use eframe::egui::{self, Color32};
 use lahar::{Command, Pointer};
-use lahar_scene::scene::{Comparison, Controls};
+use lahar_scene::scene::{ColorBy, Comparison, Controls, Setting};
 
 use crate::camera::{Camera, V3, add, dot, length, scale, sub};
-use crate::color::{self, ColorBy, Range};
+use crate::color::{self, Range};
 use crate::compare::ComparisonDraft;
 use crate::controls::{Action, Direction};
+use crate::palette;
 use crate::pointer::{PointerMode, PointerTool};
 use crate::renderer::{Line, Picture, Sprites, View};
 use crate::scenery::{Scenery, sprites, usual_radius};
-use crate::scenes::{Changes, SceneCard, SceneInfo, Setting};
+use crate::scenes::{Changes, SceneCard, SceneInfo};
 use crate::solver::{Condition, Order, Readouts, SceneRequest, Side, SolverState};
 
 /// Work that only the window itself can do.
@@ -150,7 +151,7 @@ impl AppState {
             gravity: [0.0; 3],
             color_by: ColorBy::default(),
             palette: vec![],
-            background: color::BACKGROUND,
+            background: palette::BACKGROUND,
             range: Range::default(),
             radius: 1.0,
             pointer_tool: PointerTool::of(Controls::default(), EARTH_GRAVITY, 1.0, 0.01),
@@ -286,7 +287,7 @@ impl AppState {
                 let next = SPEEDS.into_iter().rev().find(|&s| s < self.speed * 0.999);
                 self.set_speed(next.unwrap_or(SPEEDS[0]));
             }
-            Action::Colors => self.set_color_by(self.color_by.next()),
+            Action::Colors => self.set_color_by(color::next(self.color_by)),
             Action::Fit => self.fit(),
             Action::Screenshot => self.effects.push(Effect::Screenshot),
             Action::Hints => self.show_hints = !self.show_hints,
@@ -391,7 +392,7 @@ impl AppState {
     pub fn set_color_by(&mut self, by: ColorBy) {
         self.color_by = by;
         self.sprites_are_outdated = true;
-        self.order(Order::Fields(by.fields()));
+        self.order(Order::Fields(color::fields(by)));
     }
 
     /// Draws particles anew, after a change of the palette.
@@ -477,13 +478,13 @@ impl AppState {
 
     /// Adopts the colors, the pointer tool and the speed of another scene.
     fn adopt_look(&mut self, info: &SceneInfo, first: bool) {
-        let by = info.angle.color_by;
+        let by = info.camera.color_by;
         // The person's choice stays, unless the scene asks for a quantity.
         if self.color_by != by && (first || by != ColorBy::Material) {
             self.set_color_by(by);
         }
-        self.palette = color::palette(&info.swatches);
-        self.background = color::background(info);
+        self.palette = palette::palette(&info.swatches);
+        self.background = palette::background(info);
         self.radius = usual_radius(info);
         self.pointer_tool = PointerTool::of(
             info.controls,
@@ -503,7 +504,7 @@ impl AppState {
             info.dimension,
             self.scenery.extent,
             info.gravity,
-            info.angle,
+            info.camera,
             self.aspect,
         );
         self.camera = Some(camera);
@@ -590,7 +591,7 @@ impl AppState {
         let snapshots = || self.solver.sides.iter().map(|side| &*side.snapshot);
         // All sides share one legend.
         self.range
-            .follow(by, snapshots().filter_map(|s| by.values(s)));
+            .follow(by, snapshots().filter_map(|s| color::values(by, s)));
         let colors = (by, self.palette.as_slice(), &self.range);
         self.sprites = snapshots()
             .map(|snapshot| Arc::new(sprites(snapshot, info, &self.scenery, colors)))

@@ -4,7 +4,7 @@
 //!   world [m] ──view──▶ camera's axes (right, up, back) ──projection──▶ −1..1 ──▶ points of the window
 //! ```
 
-use crate::scenes::Angle;
+use lahar_scene::scene;
 
 /// A vector in three dimensions.
 pub type V3 = [f64; 3];
@@ -68,13 +68,13 @@ const MARGIN: f64 = 1.06;
 const STEEPEST: f64 = 1.5;
 
 impl Camera {
-    /// A camera that sees what `angle` asks for, or else the whole box, in a window of `aspect` = width/height. Gravity
+    /// A camera that sees what the scene's camera `wanted` asks for, or else the whole box, in a window of `aspect` = width/height. Gravity
     /// points down.
     pub fn fit(
         dimension: usize,
         (min, max): (V3, V3),
         gravity: V3,
-        angle: Angle,
+        wanted: scene::Camera,
         aspect: f64,
     ) -> Self {
         let size = sub(max, min);
@@ -91,12 +91,12 @@ impl Camera {
             } else {
                 opposite_axis(gravity)
             },
-            half_angle: angle.field_of_view.map_or(HALF_ANGLE, |degrees| {
+            half_angle: wanted.field_of_view.map_or(HALF_ANGLE, |degrees| {
                 (0.5 * degrees.to_radians()).clamp(0.01, WIDEST)
             }),
             reach,
         };
-        if let Some(direction) = angle.direction {
+        if let Some(direction) = wanted.direction {
             camera.look_from(direction);
         }
         camera.half_height = if dimension == 2 {
@@ -115,10 +115,10 @@ impl Camera {
             }
             half_height
         };
-        if let Some(center) = angle.center {
+        if let Some(center) = wanted.center {
             camera.target = center;
         }
-        if let Some(height) = angle.height {
+        if let Some(height) = wanted.height {
             camera.half_height = 0.5 * height;
         }
         camera
@@ -316,13 +316,25 @@ mod tests {
 
     fn cameras() -> [Camera; 3] {
         [
-            Camera::fit(2, ([0.0; 3], [4.0, 2.0, 0.0]), DOWN, Angle::default(), 1.5),
-            Camera::fit(3, ([0.0; 3], [4.0, 2.0, 1.0]), DOWN, Angle::default(), 1.5),
+            Camera::fit(
+                2,
+                ([0.0; 3], [4.0, 2.0, 0.0]),
+                DOWN,
+                scene::Camera::default(),
+                1.5,
+            ),
+            Camera::fit(
+                3,
+                ([0.0; 3], [4.0, 2.0, 1.0]),
+                DOWN,
+                scene::Camera::default(),
+                1.5,
+            ),
             Camera::fit(
                 3,
                 ([-1.0; 3], [4.0, 2.0, 1.0]),
                 [0.0, 0.0, -9.81],
-                Angle::default(),
+                scene::Camera::default(),
                 0.7,
             ),
         ]
@@ -387,14 +399,14 @@ mod tests {
 
     #[test]
     fn center_height_and_field_of_view_are_those_asked_for() {
-        let angle = Angle {
+        let wanted = scene::Camera {
             center: Some([1.0, 0.5, 0.25]),
             height: Some(0.8),
             field_of_view: Some(60.0),
-            ..Angle::default()
+            ..scene::Camera::default()
         };
         for dimension in [2, 3] {
-            let camera = Camera::fit(dimension, ([0.0; 3], [4.0, 2.0, 1.0]), DOWN, angle, 1.5);
+            let camera = Camera::fit(dimension, ([0.0; 3], [4.0, 2.0, 1.0]), DOWN, wanted, 1.5);
             assert_eq!(camera.project([1.0, 0.5, 0.25], 1.5), Some([0.0, 0.0]));
             assert!((camera.half_height_at(camera.target) - 0.4).abs() < 1e-12);
             let top = add(camera.target, scale(camera.axes()[1], 0.4));

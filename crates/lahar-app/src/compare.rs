@@ -1,8 +1,6 @@
 //! The comparison that the panel is putting together: a setting of the scene, and values for it.
 
-use lahar_scene::scene::Comparison;
-
-use crate::scenes::{Setting, SettingValue};
+use lahar_scene::scene::{Comparison, Setting, SettingValue};
 
 /// A setting and the values to compare.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,7 +24,7 @@ impl ComparisonDraft {
             (Some(setting), Some(running)) if setting.key == running.key => {
                 self.key.clone_from(&setting.key);
                 self.values = (running.values.iter())
-                    .map(|value| setting.value.like(value))
+                    .map(|value| like(&setting.value, value))
                     .collect();
             }
             // The panel does not offer the key of the comparison that runs, or there are no settings.
@@ -37,7 +35,7 @@ impl ComparisonDraft {
     /// Chooses a setting, with its value and another one.
     pub fn choose(&mut self, setting: &Setting) {
         self.key.clone_from(&setting.key);
-        self.values = vec![setting.value.clone(), setting.value.another()];
+        self.values = vec![setting.value.clone(), another(&setting.value)];
     }
 
     /// Adds one more value.
@@ -47,7 +45,7 @@ impl ComparisonDraft {
             .last()
             .filter(|_| self.values.len() < Comparison::MOST)
         {
-            self.values.push(last.another());
+            self.values.push(another(last));
         }
     }
 
@@ -66,25 +64,25 @@ impl ComparisonDraft {
     }
 }
 
-impl SettingValue {
-    /// A value to compare this one with: the next word, or twice the number.
-    fn another(&self) -> Self {
-        match self {
-            Self::Number(number) if *number == 0.0 => Self::Number(1.0),
-            Self::Number(number) => Self::Number(2.0 * number),
-            Self::Word(word, words) => {
-                let at = words.iter().position(|other| other == word);
-                let next = words[at.map_or(0, |at| (at + 1) % words.len())];
-                Self::Word(next.to_owned(), words)
-            }
+/// A value to compare `value` with: the next word, or twice the number.
+fn another(value: &SettingValue) -> SettingValue {
+    match value {
+        SettingValue::Number(number) if *number == 0.0 => SettingValue::Number(1.0),
+        SettingValue::Number(number) => SettingValue::Number(2.0 * number),
+        SettingValue::Word(word, words) => {
+            let at = words.iter().position(|other| other == word);
+            let next = words[at.map_or(0, |at| (at + 1) % words.len())];
+            SettingValue::Word(next.to_owned(), words)
         }
     }
+}
 
-    /// Reads a value of the same kind from `text`.
-    fn like(&self, text: &str) -> Self {
-        match self {
-            Self::Number(number) => Self::Number(text.parse().unwrap_or(*number)),
-            Self::Word(_, words) => Self::Word(text.trim_matches(['"', '\'']).to_owned(), words),
+/// Reads a value of the same kind as `value` from `text`.
+fn like(value: &SettingValue, text: &str) -> SettingValue {
+    match value {
+        SettingValue::Number(number) => SettingValue::Number(text.parse().unwrap_or(*number)),
+        SettingValue::Word(_, words) => {
+            SettingValue::Word(text.trim_matches(['"', '\'']).to_owned(), words)
         }
     }
 }

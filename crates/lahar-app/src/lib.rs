@@ -22,6 +22,7 @@ pub mod controls;
 mod meter;
 mod overlay;
 mod painter;
+pub mod palette;
 pub mod panel;
 pub mod pointer;
 pub mod renderer;

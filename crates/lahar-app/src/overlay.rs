@@ -5,8 +5,11 @@ use eframe::egui::{
 };
 
 use crate::app_state::{AppState, Notice};
-use crate::color::{self, ColorBy};
+use lahar_scene::scene::ColorBy;
+
+use crate::color;
 use crate::controls;
+use crate::palette;
 use crate::panel::{grouped, millions, real_time};
 use crate::pointer::PointerMode;
 use crate::scenery::round_step;
@@ -41,7 +44,7 @@ pub(crate) fn pointer(state: &AppState, ui: &Ui, rect: Rect) {
     let radius = state.pointer_tool.reach / camera.half_height_at(position) * 0.5;
     let color = match mode {
         PointerMode::Attract => Color32::from_rgb(0x7f, 0xd0, 0x9c),
-        PointerMode::Repel => color::JELLY,
+        PointerMode::Repel => palette::JELLY,
         PointerMode::Drag => Color32::WHITE,
     };
     let painter = ui.painter_at(rect);
@@ -67,19 +70,20 @@ pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
             let swatches = info.swatches.iter().zip(&state.palette);
             Some(
                 swatches
-                    .map(|(s, &color)| (s.name.as_str(), color))
+                    .map(|(swatch, &color)| (swatch.name.as_str(), color))
                     .collect(),
             )
         }
         ColorBy::Body => {
-            let bodies = info.bodies.iter().take(MAX_NAMED);
+            let bodies = info.bodies.iter().enumerate().take(MAX_NAMED);
+            let color = |number| palette::color_of_body(info, number);
             Some(
                 bodies
-                    .map(|(name, [r, g, b])| (name.as_str(), Color32::from_rgb(*r, *g, *b)))
+                    .map(|(number, body)| (body.name.as_str(), color(number)))
                     .collect(),
             )
         }
-        _ => None,
+        ColorBy::Speed | ColorBy::Pressure | ColorBy::Density | ColorBy::Jacobian => None,
     };
     if let Some(named) = named {
         if named.len() < 2 {
@@ -95,8 +99,8 @@ pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     }
     let shade = Rect::from_min_size(corner - vec2(4.0, 0.0), vec2(128.0, 188.0));
     painter.rect_filled(shade, CornerRadius::same(4), SHADE);
-    let unit = state.color_by.unit(info.dimension);
-    let mut title = state.color_by.name().to_owned();
+    let unit = color::unit(state.color_by, info.dimension);
+    let mut title = color::name(state.color_by).to_owned();
     if !unit.is_empty() {
         title = format!("{title} [{unit}]");
     }
@@ -107,7 +111,7 @@ pub(crate) fn legend(state: &AppState, ui: &Ui, rect: Rect) {
     for i in 0..steps {
         let at = |k: i32| bar.bottom() - bar.height() * k as f32 / steps as f32;
         let strip = Rect::from_x_y_ranges(bar.x_range(), at(i + 1)..=at(i));
-        let color = state.color_by.along((i as f32 + 0.5) / steps as f32);
+        let color = color::along(state.color_by, (i as f32 + 0.5) / steps as f32);
         painter.rect_filled(strip, CornerRadius::ZERO, color);
     }
     let (low, high) = state.range.ends();
@@ -293,7 +297,7 @@ pub(crate) fn messages(state: &mut AppState, ui: &Ui, rect: Rect) {
     state.notify_of_retries(now);
     if let Some(why) = state.failure() {
         let text = format!("{why}\n\nR restarts the scene, 1 to 9 choose another.");
-        card(&painter, rect, rect.center(), &text, color::JELLY);
+        card(&painter, rect, rect.center(), &text, palette::JELLY);
     } else if state.solver().condition == Condition::Opening {
         let text = format!("Opening {} …", state.scene);
         card(

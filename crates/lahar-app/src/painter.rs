@@ -1,4 +1,4 @@
-//! Frames of a run as pictures that look as the window's replay of it, without a window.
+//! Pictures of a run's frames without a window. They look as the window's replay of the run does.
 
 use std::fmt;
 use std::sync::Arc;
@@ -7,16 +7,17 @@ use eframe::egui::Color32;
 use lahar::Snapshot;
 use lahar_io::image::{Coloring, Picture, Style};
 use lahar_io::output::Recording;
-use serde_json::Value;
+use lahar_scene::scene::{ColorBy, SceneView};
 
 use crate::camera::Camera;
-use crate::color::{self, ColorBy, Range};
+use crate::color::Range;
+use crate::palette;
 use crate::renderer::{self, Offscreen, View};
 use crate::scene_library;
 use crate::scenery::{Scenery, sprites, usual_radius};
 use crate::scenes::SceneInfo;
 
-/// Why a picture could not be drawn, in words: no adapter, a picture too large for it, an adapter that failed.
+/// The reason why a picture cannot be drawn: no adapter, a picture too large for it, or an adapter that failed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PaintError(String);
 
@@ -28,8 +29,8 @@ impl fmt::Display for PaintError {
 
 impl std::error::Error for PaintError {}
 
-/// Draws frames of one run by the window's renderer, all by the same view and colors. Needs a graphics adapter,
-/// which may be one in software, and no display.
+/// Draws the frames of one run with the window's renderer, all by the same camera and colors. It needs a graphics
+/// adapter, which may be one in software, and no display.
 pub struct Painter {
     offscreen: Offscreen,
     adapter: String,
@@ -44,19 +45,18 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// Chooses the view for a run. `scene` is its scene with all defaults filled in
-    /// ([`lahar_scene::scene::Scene::resolved`]), `first` a frame of it, the earlier the better. Pictures have exactly the
-    /// size of `style`.
+    /// Chooses the camera for a run. `view` is the view of its scene, and `first` a frame of it, the earlier the better.
+    /// Pictures have exactly the size of `style`.
     ///
     /// # Errors
     /// There is no adapter, or it does not work.
     pub fn new(
         recording: &Recording,
-        scene: &Value,
+        view: SceneView,
         first: &Snapshot,
         style: &Style,
     ) -> Result<Self, PaintError> {
-        let info = scene_library::recorded(recording, scene);
+        let info = scene_library::recorded_info(recording, view);
         let (offscreen, adapter) =
             Offscreen::new([style.width, style.height], style.samples).map_err(PaintError)?;
         let scenery = Scenery::new(&info, Some(first));
@@ -76,25 +76,25 @@ impl Painter {
                 info.dimension,
                 scenery.extent,
                 info.gravity,
-                info.angle,
+                info.camera,
                 aspect,
             ),
             scenery,
             aspect,
             pixels: [style.width, style.height].map(|side| side as f32),
-            palette: color::palette(&info.swatches),
+            palette: palette::palette(&info.swatches),
             by,
             range: Range::of(by, (ends.0 as f32, ends.1 as f32)),
             info,
         })
     }
 
-    /// The name of what draws.
+    /// The name of the graphics adapter.
     pub fn adapter(&self) -> &str {
         &self.adapter
     }
 
-    /// Draws one moment.
+    /// Draws one frame.
     ///
     /// # Errors
     /// The picture is too large for the adapter, or drawing failed; then no other can be drawn.
@@ -112,7 +112,7 @@ impl Painter {
                 usual_radius(&self.info),
             ),
             solid: self.info.dimension == 3,
-            background: color::background(&self.info),
+            background: palette::background(&self.info),
         };
         self.offscreen.draw(&picture).map_err(PaintError)
     }

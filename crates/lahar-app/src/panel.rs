@@ -3,11 +3,10 @@
 use eframe::egui::{self, DragValue, RichText, Slider, Ui};
 
 use crate::app_state::{AppState, SPEEDS};
-use crate::color::ColorBy;
+use crate::color;
 use crate::controls::{Action, Direction};
-use crate::scenes::{Setting, SettingValue};
 use crate::solver::Condition;
-use lahar_scene::scene::Comparison;
+use lahar_scene::scene::{ColorBy, Comparison, Setting, SettingValue};
 
 /// Shows the whole panel.
 pub fn panel(state: &mut AppState, ui: &mut Ui) {
@@ -332,10 +331,10 @@ fn gravity(state: &mut AppState, ui: &mut Ui) {
 fn looks(state: &mut AppState, ui: &mut Ui) {
     let mut by = state.color_by;
     egui::ComboBox::from_label("colors")
-        .selected_text(by.name())
+        .selected_text(color::name(by))
         .show_ui(ui, |ui| {
-            for choice in ColorBy::ALL {
-                ui.selectable_value(&mut by, choice, choice.name());
+            for choice in color::ORDER {
+                ui.selectable_value(&mut by, choice, color::name(choice));
             }
         });
     if by != state.color_by {

@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use eframe::egui::Color32;
 use lahar::{Field, Snapshot};
+use lahar_scene::scene::ColorBy;
 
 use crate::camera::{V3, add, corners, opposite_axis, scale, sub};
 use crate::collider_lines::collider_lines;
-use crate::color::{ColorBy, Range, colors};
+use crate::color::Range;
+use crate::palette::particle_colors;
 use crate::renderer::{Line, Sprites};
 use crate::scenes::SceneInfo;
 
@@ -57,7 +59,7 @@ impl Scenery {
 
 /// The radius that particles are drawn with at first, in parts of what sprites take for their spacing.
 pub(crate) fn usual_radius(info: &SceneInfo) -> f32 {
-    match (info.angle.particle_radius, info.dimension) {
+    match (info.camera.particle_radius, info.dimension) {
         (Some(_), _) => 1.0,
         (None, 2) => RADIUS_2D,
         (None, _) => RADIUS_3D,
@@ -75,7 +77,7 @@ pub(crate) fn sprites(
         return Sprites::default();
     };
     let d = snapshot.dimension;
-    let spacings: Vec<f32> = match (info.angle.particle_radius, snapshot.get(Field::Volume0)) {
+    let spacings: Vec<f32> = match (info.camera.particle_radius, snapshot.get(Field::Volume0)) {
         (Some(radius), _) => vec![radius as f32; snapshot.count],
         (None, Some(volumes)) => {
             let spacing = |&volume: &f32| if d == 2 { volume.sqrt() } else { volume.cbrt() };
@@ -84,7 +86,7 @@ pub(crate) fn sprites(
         // A recording without volumes: what two particles along a cell's side would have.
         (None, None) => vec![0.5 * info.dx as f32; snapshot.count],
     };
-    let colors = colors(by, snapshot, info, palette, range);
+    let colors = particle_colors(by, snapshot, info, palette, range);
     let places = (positions.chunks_exact(d).zip(spacings))
         .map(|(x, spacing)| {
             let mut place = [0.0, 0.0, 0.0, spacing];

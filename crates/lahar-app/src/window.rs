@@ -13,7 +13,7 @@ use crate::app_state::{AppState, Effect};
 use crate::meter::Meter;
 use crate::scenes::SceneSource;
 use crate::solver::Solver;
-use crate::{color, renderer, screenshot, view};
+use crate::{palette, renderer, screenshot, view};
 
 /// The application that eframe runs.
 pub(crate) struct Window {
@@ -140,7 +140,7 @@ impl eframe::App for Window {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        color::BACKGROUND.to_normalized_gamma_f32()
+        palette::BACKGROUND.to_normalized_gamma_f32()
     }
 }
 

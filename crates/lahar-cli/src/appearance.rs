@@ -1,7 +1,7 @@
 //! The camera and the colors that a scene asks for, for pictures drawn on the processor.
 
 use lahar_io::image::{Camera, Coloring, Renderer, Scenery, Style};
-use lahar_scene::scene::Scene;
+use lahar_scene::scene::{ColorBy, Scene};
 
 /// The largest width of a film \[pixels\], which keeps a film of all frames at a few megabytes.
 const FILM_WIDTH: u32 = 640;
@@ -15,22 +15,22 @@ pub(crate) fn film_size([width, height]: [u32; 2]) -> [u32; 2] {
 
 /// Returns the quantity that colors show in pictures of `scene`, with its range.
 pub(crate) fn coloring(scene: &Scene, scenery: &Scenery) -> Coloring {
-    match scene.camera.color_by.as_str() {
-        "body" => Coloring::Body,
-        "speed" => Coloring::Speed(scenery.speed.max(1e-3)),
-        "pressure" => Coloring::Pressure(0.0, pressure_scale(scene, scenery)),
-        "density" => {
+    match scene.camera.color_by {
+        ColorBy::Material => Coloring::Material,
+        ColorBy::Body => Coloring::Body,
+        ColorBy::Speed => Coloring::Speed(scenery.speed.max(1e-3)),
+        ColorBy::Pressure => Coloring::Pressure(0.0, pressure_scale(scene, scenery)),
+        ColorBy::Density => {
             let squeeze = squeeze(scene, scenery);
             let densities = || scene.materials.iter().map(|m| m.density);
             let least = densities().fold(f64::INFINITY, f64::min);
             let most = densities().fold(0.0, f64::max);
             Coloring::Density(least * (1.0 - squeeze), most * (1.0 + squeeze))
         }
-        "J" => {
+        ColorBy::Jacobian => {
             let squeeze = squeeze(scene, scenery);
             Coloring::Jacobian(1.0 - squeeze, 1.0 + squeeze)
         }
-        _ => Coloring::Material,
     }
 }
 
@@ -44,28 +44,25 @@ pub(crate) fn renderer(scene: &Scene, scenery: &Scenery, [width, height]: [u32; 
         ..Style::default()
     };
     let mut scenery = scenery.clone();
-    scenery.background = camera.background;
+    scenery.background = camera.background.unwrap_or_default();
     for (color, material) in scenery.colors.iter_mut().zip(&scene.materials) {
         *color = material.color.unwrap_or(*color);
     }
     scenery.bodies = scene.bodies.iter().map(|body| body.color).collect();
     let mut renderer = Renderer::new(scenery.clone(), style);
-    if camera.framed {
-        renderer = renderer.with_frame(camera.center, camera.height);
+    let framing = scene.framing();
+    if let Some((center, height)) = framing {
+        renderer = renderer.with_frame(center, height);
     }
     let aspect = f64::from(width) / f64::from(height);
-    let direction = camera.direction.map(|x| x as f32);
+    let direction = (camera.direction.unwrap_or([0.0, 0.0, 1.0])).map(|x| x as f32);
     if direction.iter().all(|x| *x == 0.0) {
         return renderer;
     }
-    let angle = camera.field_of_view.to_radians() as f32;
-    if camera.framed {
+    let angle = camera.field_of_view.unwrap_or(35.0).to_radians() as f32;
+    if let Some((center, height)) = framing {
         return renderer.with_camera(Camera::framing(
-            camera.center,
-            camera.height,
-            scenery.up,
-            direction,
-            angle,
+            center, height, scenery.up, direction, angle,
         ));
     }
     renderer.with_camera(Camera::showing_from(

@@ -71,7 +71,7 @@ impl Painter {
         };
         let painter = lahar_app::Painter::new(
             subject.recording,
-            &subject.scene.resolved(),
+            subject.scene.view(),
             subject.first,
             &style,
         )

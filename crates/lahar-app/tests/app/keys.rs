@@ -3,7 +3,8 @@
 use super::*;
 use eframe::egui::{Event, Key, Modifiers};
 use lahar::Command;
-use lahar_app::color::ColorBy;
+use lahar_app::color;
+use lahar_scene::scene::ColorBy;
 
 fn gravity(harness: &mut Harness<'_, AppState>, key: Key) -> [f64; 3] {
     harness.key_press(key);
@@ -124,7 +125,7 @@ fn c_goes_through_the_colors_and_asks_for_their_fields() {
         harness.key_press(Key::C);
         harness.run();
         assert_eq!(harness.state().color_by, by);
-        assert_eq!(orders(&mut harness), [Order::Fields(by.fields())]);
+        assert_eq!(orders(&mut harness), [Order::Fields(color::fields(by))]);
     }
 }
 

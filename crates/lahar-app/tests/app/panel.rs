@@ -4,7 +4,7 @@ use super::*;
 use eframe::egui::Key;
 use egui_kittest::kittest::Queryable;
 use lahar::Command;
-use lahar_app::scenes::SettingValue;
+use lahar_scene::scene::SettingValue;
 
 #[test]
 fn buttons_do_what_their_keys_do() {

@@ -3,9 +3,10 @@
 use super::*;
 use lahar::Field;
 use lahar_app::scene_library::SceneLibrary;
-use lahar_app::scenes::{SceneContent, Setting};
+use lahar_app::scenes::SceneContent;
 use lahar_app::solver::Condition;
 use lahar_scene::driver::Driver;
+use lahar_scene::scene::Setting;
 
 /// A scene, to be run without a window.
 fn driver(source: &dyn SceneSource, scene: &str) -> Driver {

@@ -6,11 +6,10 @@ use lahar::{
     Transfer, WallStyle,
 };
 use lahar_app::scenes::{
-    Angle, Changes, MaterialKind, OpenedScene, SceneCard, SceneContent, SceneInfo, SceneSource,
-    Setting, SettingValue, Swatch,
+    Changes, MaterialKind, OpenedScene, SceneCard, SceneContent, SceneInfo, SceneSource, Swatch,
 };
 use lahar_scene::driver::{Driver, FrameEnd, Schedule};
-use lahar_scene::scene::Controls;
+use lahar_scene::scene::{BodyView, Camera, Controls, Setting, SettingValue};
 
 /// Two blocks of water in 2D, one in 3D, and a scene that cannot be opened.
 pub(crate) struct TestScenes;
@@ -63,12 +62,16 @@ impl SceneSource for TestScenes {
             frames: None,
             swatches: vec![Swatch {
                 name: "water".into(),
-                look: MaterialKind::Liquid,
+                kind: MaterialKind::Liquid,
                 color: None,
             }],
             body_swatches: vec![0],
-            bodies: vec![("block".into(), [0x06, 0x85, 0x87])],
-            angle: Angle::default(),
+            bodies: vec![BodyView {
+                name: "block".into(),
+                material: "water".into(),
+                color: None,
+            }],
+            camera: Camera::default(),
             controls: if name == "pushed" {
                 Controls {
                     pull: Some(5.0),

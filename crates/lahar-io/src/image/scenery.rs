@@ -45,21 +45,16 @@ impl Scenery {
     /// Describes a run that was recorded; `first` is a frame of it, the earlier the better. If gravity is a formula,
     /// the second axis points up.
     pub fn recorded(scene: &Scene, first: &Snapshot) -> Self {
-        let resolved = scene.resolved();
-        let bounds = match resolved.get("domain") {
+        let view = scene.view();
+        let bounds = match view.domain {
             Some(_) => Bounds::Domain(scene.bounds()),
             None => Bounds::Around(first),
         };
-        let mut gravity = [0.0; 3];
-        let given = resolved["gravity"].as_array();
-        for (own, value) in gravity.iter_mut().zip(given.into_iter().flatten()) {
-            *own = value.as_f64().unwrap_or_default();
-        }
         let models: Vec<&str> = (scene.materials.iter())
             .map(|material| material.model.as_str())
             .collect();
-        let dx = resolved["dx"].as_f64().unwrap_or_default();
-        Self::new(scene.dimension, bounds, gravity, dx, &models).with_colliders(&scene.colliders)
+        Self::new(scene.dimension, bounds, view.gravity, view.dx, &models)
+            .with_colliders(&scene.colliders)
     }
 
     fn new(

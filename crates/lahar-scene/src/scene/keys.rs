@@ -1729,7 +1729,7 @@ pub(crate) static CAMERA: Section = Section {
         ),
         key(
             "color_by",
-            Kind::Word(&["material", "body", "speed", "pressure", "J", "density"]),
+            Kind::Word(&super::view::ColorBy::WORDS),
             "",
             Value("\"material\""),
             "What colours say.",

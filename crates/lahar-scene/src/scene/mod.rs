@@ -38,6 +38,7 @@ mod shapes;
 mod stiffness;
 #[cfg(test)]
 mod tests;
+mod view;
 
 pub use colliders::{ColliderInfo, colliders_of};
 pub use comparison::Comparison;
@@ -46,6 +47,7 @@ pub(crate) use document::shorten;
 pub(crate) use files::not_text;
 pub use reference::{docs, docs_of, schema};
 pub use stiffness::SoundSpeeds;
+pub use view::{BodyView, Camera, ColorBy, MaterialView, SceneView, Setting, SettingValue};
 
 use crate::builtin;
 use crate::error::SceneError;
@@ -117,27 +119,6 @@ pub struct BodyInfo {
     pub color: Option<[u8; 3]>,
     /// Number of particles; about, for shapes that are sampled on lattices.
     pub expected_particles: f64,
-}
-
-/// How windows and pictures look at the scene. Vectors have three components; 2D ignores the third.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Camera {
-    /// What it looks at \[m\].
-    pub center: [f64; 3],
-    /// Height of the scene that the picture shows, at the centre \[m\].
-    pub height: f64,
-    /// Whether the scene gives centre or height itself; else they show all of it.
-    pub framed: bool,
-    /// From the centre to the camera; 3D only.
-    pub direction: [f64; 3],
-    /// Angle between the picture's lower and upper edge \[degrees\]; 3D only.
-    pub field_of_view: f64,
-    /// Colour behind everything.
-    pub background: [u8; 3],
-    /// Radius of a particle as drawn \[m\].
-    pub particle_radius: f64,
-    /// "material", "body", "speed", "pressure", "J" or "density".
-    pub color_by: String,
 }
 
 /// What a run writes.
@@ -390,6 +371,30 @@ impl Scene {
             Some(span) => self.document.sources.error(span, message),
             None => SceneError::of_file(&*self.name, message),
         }
+    }
+
+    /// The scene as windows and pictures show it.
+    pub fn view(&self) -> SceneView {
+        let Document { sources, root } = &self.document;
+        let reader = Reader::new(sources, root, Span::default());
+        SceneView::read(&reader, self.frame_rate, self.colliders.clone())
+    }
+
+    /// The center and the height that a picture is to show \[m\], if the scene's camera gives one of them.
+    pub fn framing(&self) -> Option<([f64; 3], f64)> {
+        let Camera { center, height, .. } = self.camera;
+        if center.is_none() && height.is_none() {
+            return None;
+        }
+        let (min, max) = self.bounds();
+        let sides: [f64; 3] = core::array::from_fn(|i| max[i] - min[i]);
+        let extent = match self.dimension {
+            2 => sides[1],
+            _ => sides.iter().map(|side| side.powi(2)).sum::<f64>().sqrt(),
+        };
+        let whole = if extent > 0.0 { extent } else { 10.0 * self.dx() };
+        let middle = core::array::from_fn(|i| 0.5 * (min[i] + max[i]));
+        Some((center.unwrap_or(middle), height.unwrap_or(whole)))
     }
 
     /// The scene with every default filled in, and what was computed from it under "computed".
@@ -651,6 +656,7 @@ fn scene<const D: usize>(
         })
         .collect();
     let colliders = colliders::infos(&reader, &plan.colliders);
+    let view = SceneView::read(&reader, frame_rate, colliders.clone());
     Ok(Scene {
         name: name.to_owned(),
         text: text.to_owned(),
@@ -670,7 +676,7 @@ fn scene<const D: usize>(
         materials,
         bodies,
         colliders,
-        camera: read_camera(&reader, &plan)?,
+        camera: view.camera,
         controls: controls::read_controls(&reader)?,
         output: read_output(&reader)?,
         warnings: plan.warnings.clone(),
@@ -706,50 +712,6 @@ fn read_frames(scene: &Reader<'_>, time_step: TimeStep) -> Result<(f64, Option<u
         }
         _ => Ok((comes_to, Some(substeps))),
     }
-}
-
-fn read_camera<const D: usize>(scene: &Reader<'_>, plan: &Plan<D>) -> Result<Camera, SceneError> {
-    let Some(table) = scene.opt_table("camera") else {
-        return Err(scene.error("there is no camera"));
-    };
-    let (min, max) = bounds(plan);
-    let finest = plan
-        .bodies
-        .iter()
-        .zip(plan.expected_particles())
-        .map(|(body, count)| match &body.source {
-            plan::Source::Shape { spacing, .. } => *spacing,
-            plan::Source::List(_) => (body.bounds().volume() / count).powf(1.0 / D as f64),
-        });
-    let spacing = finest
-        .filter(|spacing| *spacing > 0.0)
-        .fold(plan.dx, f64::min);
-    let extent = if D == 2 {
-        max[1] - min[1]
-    } else {
-        (0..3)
-            .map(|i| (max[i] - min[i]).powi(2))
-            .sum::<f64>()
-            .sqrt()
-    };
-    Ok(Camera {
-        center: table
-            .opt_vector::<D>("center")
-            .map_or_else(|| core::array::from_fn(|i| 0.5 * (min[i] + max[i])), three),
-        height: table.opt_number("height").unwrap_or(if extent > 0.0 {
-            extent
-        } else {
-            10.0 * plan.dx
-        }),
-        framed: table.has("center") || table.has("height"),
-        direction: table
-            .opt_vector::<3>("direction")
-            .unwrap_or([0.0, 0.0, 1.0]),
-        field_of_view: table.opt_number("field_of_view").unwrap_or(35.0),
-        background: table.opt_color("background").unwrap_or_default(),
-        particle_radius: table.opt_number("particle_radius").unwrap_or(0.6 * spacing),
-        color_by: table.text("color_by")?.to_owned(),
-    })
 }
 
 fn read_output(scene: &Reader<'_>) -> Result<OutputPlan, SceneError> {

@@ -156,6 +156,20 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// The elements of a list, with `None` for each that is not a number.
+    pub(crate) fn opt_components(&self, key: &str) -> Option<Vec<Option<f64>>> {
+        match &self.table.get(key)?.value {
+            Value::List(list) => Some(list.iter().map(|node| node.value.as_number()).collect()),
+            _ => None,
+        }
+    }
+
+    /// The keys of this table that have numbers for values, and these numbers, in order.
+    pub(crate) fn numbers(&self) -> impl Iterator<Item = (&'a str, f64)> {
+        (self.table.entries.iter())
+            .filter_map(|entry| Some((entry.key.as_str(), entry.node.value.as_number()?)))
+    }
+
     /// The tables in a table or list, with their keys; elements of a list have the empty key.
     pub(crate) fn tables(&self, key: &str) -> Vec<(&'a str, Reader<'a>)> {
         match self.table.get(key).map(|node| &node.value) {
