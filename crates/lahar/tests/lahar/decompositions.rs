@@ -169,6 +169,31 @@ fn wide_vector<T: Number, const D: usize>(
     Vector(v.0.map(|x| std::array::from_fn(|k| x[k].to_f64() * scale[k])))
 }
 
+/// Returns 1 for matrices whose last singular value is larger than the errors but has not the sign of det F; else 0.
+#[inline(always)]
+fn wrong_sign<R: Real, const D: usize>(
+    f: Matrix<R, D>,
+    sigma: Vector<R, D>,
+    size: R,
+    epsilon: f64,
+) -> R {
+    let (zero, one) = (size.zero(), size.one());
+    let mut others = size;
+    for i in 0..D - 1 {
+        others *= sigma[i];
+    }
+    let mut cube = one.lit(8.0 * f64::EPSILON);
+    for _ in 0..D {
+        cube *= size;
+    }
+    let determinant = f.determinant();
+    let resolved = determinant
+        .abs()
+        .gt(others * one.lit(CLAIMS[3].0 * epsilon) + cube);
+    let wrong = (sigma[D - 1] * determinant).lt(zero) & resolved;
+    R::select(wrong, one, zero)
+}
+
 /// Returns the error of each claim in units of `epsilon`, for one register of matrices.
 #[inline(always)]
 fn errors<S: Simd, const D: usize>(
@@ -223,21 +248,7 @@ fn errors<S: Simd, const D: usize>(
 
     let mut smallest = u.determinant().min(v.determinant());
     smallest = smallest.min(r.determinant());
-    // If the last singular value is larger than the errors, its sign is that of det F.
-    let mut others = size;
-    for i in 0..D - 1 {
-        others *= sigma[i];
-    }
-    let mut cube = one.lit(8.0 * f64::EPSILON);
-    for _ in 0..D {
-        cube *= size;
-    }
-    let determinant = f.determinant();
-    let resolved = determinant
-        .abs()
-        .gt(others * one.lit(CLAIMS[3].0 * epsilon) + cube);
-    let wrong = (sigma[D - 1] * determinant).lt(zero) & resolved;
-    let wrong = <f64 as Lanes>::Of::<S>::select(wrong, one, zero);
+    let wrong = wrong_sign(f, sigma, size, epsilon);
 
     [
         relative(product - f),
@@ -381,6 +392,44 @@ impl<const D: usize> Sample<D> {
         }
     }
 
+    /// Returns a singular matrix.
+    fn singular(random: &mut Random) -> Self {
+        match random.below(4) {
+            0 => Self::unknown(Matrix::from_fn(|_, _| random.below(5) as f64 - 2.0)),
+            1 => Self::unknown(Matrix::from_fn(|_, _| random.below(2) as f64)),
+            2 => {
+                let mut values = [0.0; D];
+                values[random.below(D)] = random.between(0.0, 1.0);
+                values[random.below(D)] = random.between(-1.0, 1.0);
+                values[random.below(D)] = 0.0;
+                Self::of(random.rotation(), values, random.rotation())
+            }
+            // A random matrix with a column or a row of zeros.
+            _ => {
+                let (zeroed, mut matrix) = (random.below(D), random.normal_matrix());
+                matrix.0[zeroed] = Vector([0.0; D]);
+                let sideways = random.below(2) == 0;
+                Self::unknown(if sideways { matrix.transpose() } else { matrix })
+            }
+        }
+    }
+
+    /// Returns a matrix of any magnitude.
+    fn scaled<T: Number>(random: &mut Random) -> Self {
+        let inner = if random.below(2) == 0 {
+            Kind::Gaussian
+        } else {
+            Kind::Ratios
+        };
+        let mut sample = Self::new::<T>(inner, random);
+        let size = sample.sigma.map_or(1.0, |sigma| sigma[0].abs());
+        let scale = random.decades(T::DECADES.0, T::DECADES.1);
+        sample.matrix = sample.matrix * (1.0 / size) * scale;
+        sample.sigma = sample.sigma.map(|sigma| sigma.map(|x| x / size * scale));
+        sample
+    }
+
+    /// Returns a matrix of a kind.
     fn new<T: Number>(kind: Kind, random: &mut Random) -> Self {
         let identity = Matrix::<f64, D>::identity(1.0);
         match kind {
@@ -407,24 +456,7 @@ impl<const D: usize> Sample<D> {
                 }
                 Self::of(random.rotation(), values, random.rotation())
             }
-            Kind::Singular => match random.below(4) {
-                0 => Self::unknown(Matrix::from_fn(|_, _| random.below(5) as f64 - 2.0)),
-                1 => Self::unknown(Matrix::from_fn(|_, _| random.below(2) as f64)),
-                2 => {
-                    let mut values = [0.0; D];
-                    values[random.below(D)] = random.between(0.0, 1.0);
-                    values[random.below(D)] = random.between(-1.0, 1.0);
-                    values[random.below(D)] = 0.0;
-                    Self::of(random.rotation(), values, random.rotation())
-                }
-                // A random matrix with a column or a row of zeros.
-                _ => {
-                    let (zeroed, mut matrix) = (random.below(D), random.normal_matrix());
-                    matrix.0[zeroed] = Vector([0.0; D]);
-                    let sideways = random.below(2) == 0;
-                    Self::unknown(if sideways { matrix.transpose() } else { matrix })
-                }
-            },
+            Kind::Singular => Self::singular(random),
             Kind::NearIdentity => {
                 Self::unknown(identity + random.normal_matrix() * random.decades(-17.0, -1.0))
             }
@@ -458,19 +490,7 @@ impl<const D: usize> Sample<D> {
                 matrix[(i, j)] = random.sign() * random.decades(-T::DIGITS, 0.5 * T::DIGITS);
                 Self::unknown(matrix)
             }
-            Kind::Scaled => {
-                let inner = if random.below(2) == 0 {
-                    Kind::Gaussian
-                } else {
-                    Kind::Ratios
-                };
-                let mut sample = Self::new::<T>(inner, random);
-                let size = sample.sigma.map_or(1.0, |sigma| sigma[0].abs());
-                let scale = random.decades(T::DECADES.0, T::DECADES.1);
-                sample.matrix = sample.matrix * (1.0 / size) * scale;
-                sample.sigma = sample.sigma.map(|sigma| sigma.map(|x| x / size * scale));
-                sample
-            }
+            Kind::Scaled => Self::scaled::<T>(random),
         }
     }
 }

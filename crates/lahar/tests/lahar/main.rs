@@ -9,6 +9,7 @@ mod decompositions;
 mod determinism;
 mod equations;
 mod fixtures;
+mod fluids;
 mod forces;
 mod materials;
 mod pointer;
