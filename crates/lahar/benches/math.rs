@@ -1,5 +1,7 @@
-//! What is computed for each particle alone: decompositions and laws, in lanes of the machine's widest
-//! instruction set, on numbers that stay in the first-level cache. `cargo bench -p lahar --bench math`
+//! Speed of the computations of single particles: decompositions and constitutive models.
+//!
+//! They run in lanes of the machine's widest instruction set, on numbers that stay in the first-level cache:
+//! `cargo bench -p lahar --bench math`
 
 use criterion::{Criterion, Throughput};
 use fearless_simd::{Level, Simd, dispatch};
@@ -8,13 +10,13 @@ use lahar::math::{Lanes, Matrix, Real, polar, svd};
 use lahar::{Model, material};
 use std::hint::black_box;
 
-/// Particles a call.
+/// Number of particles per call.
 const BATCH: usize = 512;
 
-/// The most columns that anything reads.
+/// The largest number of columns that a computation reads.
 const COLUMNS: usize = 16;
 
-/// Columns of numbers, small as strains are.
+/// Returns columns of small numbers, of the size of strains.
 fn numbers<T: Lanes>() -> [Vec<T>; COLUMNS] {
     let mut state = 1_u64;
     let mut number = || {
@@ -24,9 +26,9 @@ fn numbers<T: Lanes>() -> [Vec<T>; COLUMNS] {
     core::array::from_fn(|_| (0..BATCH).map(|_| number()).collect())
 }
 
-/// Something to compute from a particle's numbers.
+/// A computation on the numbers of a particle.
 trait Work<const D: usize> {
-    /// A sum of all results, so that none is left out.
+    /// Returns the sum of all results, so that none is optimized away.
     fn of<R: Real>(&self, column: impl Fn(usize) -> R) -> R;
 }
 

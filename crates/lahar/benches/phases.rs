@@ -1,8 +1,7 @@
-//! The phases of a substep: scatter, grid, gather, volume, and a sort, on one thread with the machine's widest
-//! instruction set. `cargo bench -p lahar --bench phases`
+//! Speed of the phases of a substep: scatter, grid, gather, volume and sort, on one thread with the machine's widest
+//! instruction set: `cargo bench -p lahar --bench phases`
 //!
-//! A simulation runs with a clock, and each measurement is what its phase took of the substeps: nothing inside
-//! has to be public for that.
+//! A simulation runs with a clock, and each measurement is the time of one phase in its substeps.
 
 use criterion::{Criterion, Throughput};
 use lahar::material::{Corotated, Dust, Snow, lame, preset};
@@ -11,7 +10,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::LazyLock;
 use std::time::{Duration, Instant};
 
-/// Particles of a body, about.
+/// Approximate number of particles of a body.
 const PARTICLES: f64 = 1e5;
 
 fn clock() -> f64 {
@@ -24,7 +23,7 @@ fn one_thread() -> ThreadPool {
     pool.expect("a thread can be started")
 }
 
-/// A cube of a material, 2ᴰ particles a cell, that flies and is sheared.
+/// Builds a cube of a material with 2ᴰ particles per cell that flies and is sheared.
 fn cube<T: Instance<D>, const D: usize>(model: Model) -> Box<dyn Simulate> {
     let cells = (PARTICLES / f64::powi(2.0, D as i32))
         .powf(1.0 / D as f64)
@@ -60,7 +59,7 @@ fn cube<T: Instance<D>, const D: usize>(model: Model) -> Box<dyn Simulate> {
     Box::new(simulation)
 }
 
-/// What `phase` takes of a substep, or of all substeps until the next sort.
+/// Measures the time of `phase` in a substep, or in all substeps until the next sort.
 fn time(
     criterion: &mut Criterion,
     name: &str,
@@ -136,7 +135,7 @@ fn phases(criterion: &mut Criterion) {
             );
         }
     }
-    // Dust has no sound: it crosses a cell in three substeps.
+    // Dust carries no sound, so its substeps are long: it crosses a cell in three.
     let mut dust = cube::<f32, 3>(Model::Dust(Dust));
     time(
         criterion,
