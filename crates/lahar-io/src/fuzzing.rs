@@ -1,5 +1,4 @@
-//! The readers of checkpoints, as the targets in fuzz/ call them: bytes in, nothing out. A target fails by a panic, a hang
-//! or too much memory.
+//! The readers of checkpoints as the targets in fuzz/ call them. A target fails by a panic, a hang or too much memory.
 
 use std::cell::RefCell;
 
@@ -10,8 +9,8 @@ use lahar_scene::scene::Scene;
 
 use crate::checkpoint::{self, Checksums};
 
-/// A checkpoint's file. Its sums are taken for right, and its length: else nearly all changes would end there.
-/// What can be read goes to a simulation.
+/// Reads `bytes` as the file of a checkpoint, and resumes a simulation from it. The length and the checksums are taken as
+/// right, since nearly all altered files would stop there.
 pub fn checkpoint(bytes: &[u8]) {
     drop(checkpoint::read(bytes, bytes.len() as u64));
     let mut bytes = bytes.to_vec();
@@ -21,11 +20,11 @@ pub fn checkpoint(bytes: &[u8]) {
     }
     let read = checkpoint::read_with(&*bytes, bytes.len() as u64, Checksums::Ignored);
     if let Ok((_, checkpoint)) = read {
-        go_on_from(checkpoint);
+        resume_from(checkpoint);
     }
 }
 
-/// A scene of some particles, a wall, a force by where they started and a gauge.
+/// A scene with few particles, walls, a force that depends on starting positions, and a gauge.
 const SMALL: &str = r#"
 dx = 0.1
 gravity = [0.0, -9.81]
@@ -51,7 +50,7 @@ pressure = { at = [1.0, 0.1] }
 "#;
 
 thread_local! {
-    /// The small scene after some substeps, and its checkpoint.
+    /// The small scene after some substeps, and a checkpoint of it.
     static GOOD: (RefCell<Box<dyn Simulate>>, Checkpoint) = {
         let scene = Scene::parse(SMALL, "small.toml", &[]).expect("the small scene is sound");
         let mut simulation = (scene.build(Isa::Portable)).expect("it can be built").simulation;
@@ -61,8 +60,8 @@ thread_local! {
     };
 }
 
-/// A simulation that takes this checkpoint must be able to tell of itself and to take substeps, too.
-fn go_on_from(checkpoint: Checkpoint) {
+/// Resumes the small scene. If it accepts the checkpoint, it must give snapshots and diagnostics and take substeps.
+fn resume_from(checkpoint: Checkpoint) {
     GOOD.with(|(simulation, _)| {
         let mut simulation = simulation.borrow_mut();
         if simulation.resume(checkpoint).is_ok() {
@@ -78,7 +77,7 @@ fn go_on_from(checkpoint: Checkpoint) {
     });
 }
 
-/// Arrays of a checkpoint: `bytes` are changes to a good one (which array, which number, what it becomes).
+/// Alters arrays of a good checkpoint and resumes from it. `bytes` are the changes: array, number, new value.
 pub fn state(bytes: &[u8]) {
     let mut checkpoint = GOOD.with(|(_, checkpoint)| checkpoint.clone());
     for change in bytes.as_chunks::<12>().0.iter().take(8) {
@@ -94,7 +93,7 @@ pub fn state(bytes: &[u8]) {
             _ => set(&mut array.values, at, bits),
         }
     }
-    go_on_from(checkpoint);
+    resume_from(checkpoint);
 }
 
 fn truncate(values: &mut Values, length: usize) {
@@ -127,7 +126,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Changes of a checkpoint that were found to matter, and random ones.
+    /// An unchanged checkpoint, and random changes.
     #[test]
     fn no_state_makes_a_simulation_panic() {
         state(&[]);

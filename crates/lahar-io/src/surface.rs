@@ -1,13 +1,13 @@
-//! Surfaces around particles, by splashsurf: triangle meshes that are closed, of the volume that the particles fill.
+//! Surfaces around particles, made by splashsurf: closed triangle meshes with the volume of the particles.
 //!
-//! splashsurf sums a kernel over particles, each weighted by the volume that its own neighborhood gives it,
+//! splashsurf sums a kernel over particles, each weighted by the volume that its neighborhood gives it,
 //!
 //! ```text
 //! c(x) = Σ_p W(x − x_p) / Σ_q W(x_p − x_q)
 //! ```
-//! and cuts where c has some value. Deep inside it is 1. Which value lies on the surface follows from the particles'
-//! spacing: `level` computes it for a half-space of particles on a lattice, whose surface is half a spacing beyond
-//! the outermost ones. So a body's mesh has the body's volume, whatever its size and the number of its particles.
+//! and places the surface at one value of c. Deep inside c is 1. The value at the surface follows from the spacing of
+//! particles: `level` computes it for a half-space of particles on a lattice, whose surface is half a spacing beyond the
+//! outermost ones. So a mesh has the volume of its body, for any size and number of particles.
 
 use std::fmt;
 
@@ -21,17 +21,17 @@ use crate::export::Triangles;
 /// Radius of the kernel, in spacings of particles: smaller ones leave holes between scattered particles.
 const REACH: f64 = 2.5;
 
-/// How far a pass of smoothing moves vertices towards the middle of their neighbors, and the next one back, a little
-/// farther so that no wave grows: what is long keeps its size (G. Taubin, "A signal processing approach to fair surface
-/// design", SIGGRAPH 1995).
+/// Amounts by which two passes of smoothing move vertices towards the middle of their neighbors, and back. The second is
+/// a little larger, so that no wave grows and long shapes keep their size (G. Taubin, "A signal processing approach to
+/// fair surface design", SIGGRAPH 1995).
 const SMOOTH: [f32; 2] = [0.5, -0.53];
 
-/// How surfaces are made.
+/// Resolution and smoothing of surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Style {
-    /// Edge of the cubes that the surface is cut from, in spacings of particles.
+    /// Edge of the cubes in which the surface is built, in spacings of particles.
     pub cube: f64,
-    /// Passes of smoothing, there and back.
+    /// Number of passes of smoothing, each there and back.
     pub smoothing: u32,
 }
 
@@ -44,16 +44,27 @@ impl Default for Style {
     }
 }
 
-/// Triangles over common vertices; the front is outside.
+/// A surface: triangles over common vertices, with the front outside.
+///
+/// ```
+/// use lahar_io::surface::{Style, Surface};
+///
+/// // A block of 4 × 4 × 4 particles, 0.1 m apart.
+/// let positions: Vec<[f64; 3]> = (0..64)
+///     .map(|i| [i % 4, i / 4 % 4, i / 16].map(|k| 0.1 * f64::from(k)))
+///     .collect();
+/// let surface = Surface::around(&positions, 1e-3, Style::default()).unwrap();
+/// assert!((surface.volume() / 0.064 - 1.0).abs() < 0.1);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
-    /// Places \[m\].
+    /// Positions \[m\], one per vertex.
     pub vertices: Vec<[f64; 3]>,
-    /// Indices of vertices, counter-clockwise seen from outside.
+    /// Three indices of vertices per triangle, counterclockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Why there is no surface.
+/// The reason why no surface can be made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SurfaceError(String);
 
@@ -66,16 +77,16 @@ impl fmt::Display for SurfaceError {
 impl std::error::Error for SurfaceError {}
 
 impl Surface {
-    /// The surface of particles at `positions` \[m\], each of which fills `volume` \[m³\] on average. None for no
-    /// particles.
+    /// Builds the surface around particles at `positions` \[m\], each with the volume `volume` \[m³\] on average. Without
+    /// particles the surface is empty.
     ///
     /// # Errors
-    /// If the volume is not a positive number, the cubes are not, or there would be more of them than can be counted.
+    /// If the volume or the edge of cubes is not a positive number, or there would be too many cubes.
     pub fn around(positions: &[[f64; 3]], volume: f64, style: Style) -> Result<Self, SurfaceError> {
         let positive = |x: f64| x.is_finite() && x > 0.0;
         if !positive(volume) || !positive(style.cube) {
             return Err(SurfaceError(format!(
-                "particles fill {volume} m³ each, cubes have an edge of {} spacings",
+                "the volume of a particle is {volume} m³ and the edge of cubes {} spacings; both must be above 0",
                 style.cube
             )));
         }
@@ -83,7 +94,7 @@ impl Surface {
             return Ok(Self::default());
         };
         let spacing = volume.cbrt();
-        // In spacings and from one of the particles, so that single precision is fine enough anywhere.
+        // In spacings, relative to one of the particles, so that single precision is enough anywhere.
         let places: Vec<Vector3<f32>> = positions
             .iter()
             .map(|x| Vector3::from_fn(|i, _| ((x[i] - origin[i]) / spacing) as f32))
@@ -113,7 +124,7 @@ impl Surface {
         })
     }
 
-    /// As files take it.
+    /// Returns the triangles for [`MeshFormat::write`](crate::export::MeshFormat::write).
     pub fn as_triangles(&self) -> Triangles<'_> {
         Triangles {
             vertices: &self.vertices,
@@ -121,7 +132,7 @@ impl Surface {
         }
     }
 
-    /// The volume inside \[m³\]: tetrahedra from the first vertex to each triangle.
+    /// Returns the volume inside \[m³\]: the sum of tetrahedra from the first vertex to each triangle.
     pub fn volume(&self) -> f64 {
         let Some(origin) = self.vertices.first() else {
             return 0.0;
@@ -154,7 +165,7 @@ fn smooth(mesh: &mut TriMesh3d<f32>, passes: u32) {
     }
 }
 
-/// The cubic spline of reach 2 h, less its constant factor.
+/// The cubic spline kernel of reach 2 h, without its constant factor.
 fn kernel(distance: f64, reach: f64) -> f64 {
     let q = 2.0 * distance / reach;
     match q {
@@ -164,12 +175,12 @@ fn kernel(distance: f64, reach: f64) -> f64 {
     }
 }
 
-/// c on the plane half a spacing above a half-space of particles, which have the distance 1; the mean over the plane.
+/// Returns the mean of c over the plane half a spacing above a half-space of particles with spacing 1.
 fn level(reach: f64) -> f64 {
     /// Points along an edge of the lattice over which the mean is taken.
     const POINTS: i32 = 8;
     let depth = reach.ceil() as i32 + 1;
-    // What a layer of particles gives at a height over it.
+    // The sum of the kernel over one layer of particles, at a height above it.
     let layer = |height: f64, y: f64, z: f64| -> f64 {
         let places = -depth..=depth;
         (places.clone())
@@ -206,7 +217,7 @@ mod tests {
     use super::*;
     use std::collections::BTreeMap;
 
-    /// Particles in what `inside` holds of the unit cube, `edge` along its edge; `jitter` in spacings.
+    /// Particles inside the part of the unit cube that `inside` accepts, `edge` along its edge; `jitter` in spacings.
     fn particles(edge: u32, jitter: f64, inside: impl Fn([f64; 3]) -> bool) -> Vec<[f64; 3]> {
         let mut state = 1_u64;
         let mut random = || {

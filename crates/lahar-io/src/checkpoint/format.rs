@@ -7,12 +7,12 @@
 //! 16   8  length of the file
 //! 24   4  length of the contents
 //! 28   4  CRC-32 of the contents
-//! 32      the contents: JSON, with a line an array (name, type, shape, place, CRC-32)
+//! 32      the contents: JSON, with one entry per array (name, type, shape, place, CRC-32)
 //!         the arrays, raw, each at a multiple of 8
 //! end−4   CRC-32 of everything before
 //! ```
-//! A reader believes nothing: no array is larger than what is left of the file, and each is checked against its
-//! sum before it is used.
+//! The reader trusts nothing: an array that is larger than the rest of the file is an error before memory is allocated,
+//! and each array is checked against its checksum before it is used.
 
 use std::io::{self, Read, Write};
 use std::ops::Range;
@@ -26,31 +26,31 @@ use super::Progress;
 const MAGIC: [u8; 8] = *b"LAHAR\r\n\x1a";
 const FORMAT: u32 = 1;
 const BYTE_ORDER: u32 = 0x0A0B_0C0D;
-/// Where the length of the file stands.
+/// Place of the file's length.
 pub(crate) const LENGTH_AT: Range<usize> = 16..24;
-/// Bytes before the contents.
+/// Number of bytes before the contents.
 const HEAD: u64 = 32;
-/// Bytes after the arrays.
+/// Number of bytes after the arrays.
 const TAIL: u64 = 4;
-/// Arrays begin at multiples of this.
+/// Arrays begin at multiples of this number of bytes.
 const ALIGN: u64 = 8;
-/// Bytes that are converted at a time.
+/// Number of bytes that are converted at a time.
 const CHUNK: usize = 1 << 16;
 
-/// What a checkpoint says of itself besides its arrays.
+/// The part of a checkpoint that is not arrays.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
-    /// Version of the program that wrote it.
+    /// Version of the program that wrote the checkpoint.
     pub lahar: String,
     /// 2 or 3.
     pub dimension: usize,
     /// "f32" or "f64".
     pub precision: String,
-    /// The instruction set in use.
+    /// Name of the instruction set in use.
     pub isa: String,
-    /// What the run began with: [`Start::sum`](super::Start::sum).
+    /// Checksum of the run's start: [`Start::sum`](super::Start::sum).
     pub start: u32,
-    /// How far the run was.
+    /// Progress of the run.
     pub progress: Progress,
 }
 
@@ -61,14 +61,14 @@ struct Contents {
     arrays: Vec<ArrayEntry>,
 }
 
-/// An array in the contents.
+/// The entry of an array in the contents.
 #[derive(Serialize, Deserialize)]
 struct ArrayEntry {
     name: String,
     #[serde(rename = "type")]
     kind: NumberType,
     shape: Vec<usize>,
-    /// From the start of the file.
+    /// Place of its first byte, from the start of the file.
     at: u64,
     crc32: u32,
 }
@@ -94,7 +94,7 @@ impl NumberType {
         }
     }
 
-    /// Bytes of a number.
+    /// Returns the bytes per number.
     fn size(self) -> u64 {
         match self {
             Self::F32 | Self::U32 | Self::I32 => 4,
@@ -103,7 +103,7 @@ impl NumberType {
     }
 }
 
-/// Hands the little-endian bytes of `values` to `to`, a chunk at a time.
+/// Passes the little-endian bytes of `values` to `to`, one chunk at a time.
 fn each_chunk(values: &Values, mut to: impl FnMut(&[u8]) -> io::Result<()>) -> io::Result<()> {
     fn each<V: Copy, const N: usize>(
         values: &[V],
@@ -137,7 +137,7 @@ fn checksum(values: &Values) -> u32 {
     sum.finalize()
 }
 
-/// Passes on what is written, and sums it up.
+/// A writer that counts the bytes that pass and computes their checksum.
 struct SummingWriter<W> {
     inner: W,
     sum: crc32fast::Hasher,
@@ -158,7 +158,27 @@ impl<W: Write> SummingWriter<W> {
     }
 }
 
-/// Writes a checkpoint.
+/// Writes a checkpoint and returns the writer.
+///
+/// ```
+/// use lahar::Checkpoint;
+/// use lahar_io::checkpoint::{Header, Progress, read, write};
+///
+/// let header = Header {
+///     lahar: "0.1.0".into(),
+///     dimension: 2,
+///     precision: "f32".into(),
+///     isa: "portable".into(),
+///     start: 0,
+///     progress: Progress::default(),
+/// };
+/// let state = Checkpoint { arrays: vec![] };
+/// let mut bytes = write(Vec::new(), &header, &state)?;
+/// assert_eq!(read(&*bytes, bytes.len() as u64), Ok((header, state)));
+/// bytes[40] ^= 1;
+/// assert!(read(&*bytes, bytes.len() as u64).is_err());
+/// # Ok::<(), std::io::Error>(())
+/// ```
 ///
 /// # Errors
 /// If `writer` fails.
@@ -174,8 +194,8 @@ pub fn write<W: Write>(writer: W, header: &Header, checkpoint: &Checkpoint) -> i
         header: header.clone(),
         arrays: checkpoint.arrays.iter().map(line).collect(),
     };
-    // Places are counted from the end of the contents, whose length depends on them: they are written as wide
-    // as the widest there is.
+    // The places of arrays depend on the length of the contents, which depends on the digits of the places. So room is
+    // made for the widest places, and the rest is filled with spaces.
     let wide = serde_json::to_string(&contents)?.len() as u64;
     let mut at = (HEAD + wide).next_multiple_of(ALIGN);
     for (line, array) in contents.arrays.iter_mut().zip(&checkpoint.arrays) {
@@ -210,7 +230,7 @@ pub fn write<W: Write>(writer: W, header: &Header, checkpoint: &Checkpoint) -> i
     Ok(out.inner)
 }
 
-/// Takes bytes off a reader that is `left` long, and sums them up.
+/// A reader that counts the bytes that pass, up to a known length, and computes their checksum.
 struct CheckedReader<R> {
     inner: R,
     sum: crc32fast::Hasher,
@@ -222,7 +242,7 @@ const CUT: &str = "it is cut short";
 
 impl<R: Read> CheckedReader<R> {
     fn bytes(&mut self, count: u64) -> Result<Vec<u8>, String> {
-        // Before anything is allocated.
+        // Checked before memory is allocated.
         if count > self.length - self.read {
             return Err(CUT.to_owned());
         }
@@ -261,24 +281,24 @@ impl<R: Read> CheckedReader<R> {
     }
 }
 
-/// What a reader makes of a file's sums.
+/// Treatment of a file's checksums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Checksums {
-    /// They must be right.
+    /// Checksums must be right.
     Checked,
-    /// As if whoever altered the file had set them right, too.
+    /// Checksums are ignored, as if they had been adapted to altered contents.
     Ignored,
 }
 
 /// Reads a checkpoint from a file of `length` bytes.
 ///
 /// # Errors
-/// What is wrong with it, as the rest of a sentence about it: it is cut, altered, or of another version.
+/// A sentence about the file, if it is cut, altered, or of another version.
 pub fn read<R: Read>(reader: R, length: u64) -> Result<(Header, Checkpoint), String> {
     read_with(reader, length, Checksums::Checked)
 }
 
-/// [`read`], with or without a look at its sums.
+/// Reads a checkpoint as [`read`] does, with or without a check of its checksums.
 ///
 /// # Errors
 /// As [`read`].
@@ -432,7 +452,7 @@ mod tests {
         );
     }
 
-    /// Checksums can be made to fit; sizes beyond the file must still not be believed.
+    /// Even with right checksums, sizes beyond the file are an error before memory is allocated.
     #[test]
     fn sizes_that_lie_allocate_nothing() {
         let (header, checkpoint) = example();

@@ -1,13 +1,14 @@
-//! What a run keeps so that it can go on after anything: `DIR/checkpoints/`.
+//! Checkpoints on disk: everything a run needs to be resumed after any end, in `DIR/checkpoints/`.
 //!
 //! ```text
-//! checkpoints/start.json          what the run began with: scene, its files, instruction set, outputs   start
+//! checkpoints/start.json          start of the run: scene, its files, instruction set, outputs         start
 //! checkpoints/files/0.csv         copies of files that the scene names
 //! checkpoints/000120.checkpoint   the state after frame 120; the newest two are kept                    format, store
-//! checkpoints/lock                held by the run that writes here                                      files::lock
+//! checkpoints/lock                locked by the process that writes here                               files::lock
+//! checkpoints/film                pictures of the film so far                                           output
 //! ```
-//! A checkpoint says how long each growing file was when it was written, so that whoever goes on from it cuts
-//! them back and writes what follows again: the same bytes.
+//! A checkpoint records the length of each growing file. A resumed run cuts the files back to these lengths and writes
+//! the rest again, with the same bytes.
 
 mod format;
 mod progress;

@@ -94,16 +94,16 @@ pub struct OutputCounts {
 /// Seconds by phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PhaseSeconds {
-    /// Moving particles to their blocks.
+    /// Sorting particles into blocks.
     pub sort: f64,
-    /// Setting volumes right by how full the grid is.
+    /// Correcting volumes by the density on the grid.
     #[serde(default)]
     pub volume: f64,
-    /// Particles to grid.
+    /// Particles to grid (P2G).
     pub scatter: f64,
-    /// Grid update.
+    /// Grid update and boundaries.
     pub grid: f64,
-    /// Grid to particles.
+    /// Grid to particles (G2P).
     pub gather: f64,
     /// What else a frame takes: time steps, boundaries' accounts, probes, the copy that a frame that fails
     /// begins again from.

@@ -1,4 +1,4 @@
-//! `checkpoints/start.json`: what a run began with, so that it can begin or go on without the scene's own files.
+//! `checkpoints/start.json`: the start of a run, so that it can begin or be resumed without the scene's own files.
 
 use std::fs::{self, File};
 use std::io::{self, Write};
@@ -12,26 +12,26 @@ use crate::files::{
 use lahar_scene::error::SceneError;
 use lahar_scene::scene::{KeptFile, Limits, Scene};
 
-/// What a run began with.
+/// The start of a run: scene, files, instruction set and outputs.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Start {
     /// Version of the program.
     pub lahar: String,
-    /// Name of the scene: a built-in's, or its file's.
+    /// Name of the scene: of a built-in scene, or of its file.
     pub scene: String,
-    /// The scene's text.
+    /// Text of the scene file.
     pub text: String,
-    /// What was laid over it.
+    /// Keys and values that were laid over the scene.
     pub set: Vec<(String, String)>,
-    /// Copies of the files that it names.
+    /// Copies of the files that the scene names.
     pub files: Vec<KeptFile>,
-    /// The instruction set in use.
+    /// Name of the instruction set in use.
     pub isa: String,
-    /// Frames after the one at the start.
+    /// Number of frames after the one at the start.
     pub frames: u64,
-    /// What is written; whoever runs knows how to read it.
+    /// Outputs of the run, in the caller's own form.
     pub outputs: serde_json::Value,
-    /// What looked suspicious about the scene.
+    /// Warnings about the scene.
     pub warnings: Vec<String>,
 }
 
@@ -44,10 +44,10 @@ impl Start {
         !is_link(&folder.join(NAME)) && Self::read(folder).is_ok()
     }
 
-    /// Copies the files of `scene` to `folder`, and writes this there. When it returns all is on the disk.
+    /// Copies the files of `scene` to `folder`, writes `start.json` there, and waits until all is on the disk.
     ///
     /// # Errors
-    /// If something cannot be read or written.
+    /// If a file cannot be read or written.
     pub fn write(&mut self, scene: &Scene, folder: &Path) -> Result<(), OutputError> {
         let files = folder.join(FILES);
         self.files.clear();
@@ -76,10 +76,10 @@ impl Start {
         self.rewrite(folder)
     }
 
-    /// Writes this alone, to `folder` (`DIR/checkpoints`).
+    /// Writes `start.json` alone to `folder` (`DIR/checkpoints`).
     ///
     /// # Errors
-    /// If it cannot be written; what was there stays.
+    /// If it cannot be written; the old file stays.
     pub fn rewrite(&self, folder: &Path) -> Result<(), OutputError> {
         write_whole(&folder.join(NAME), Durability::Immediate, |mut writer| {
             writer.write_all(&self.text()?)?;
@@ -94,7 +94,8 @@ impl Start {
         Ok(text)
     }
 
-    /// What a checkpoint remembers of this: it belongs to no other run. How long a run is, is not part of it.
+    /// Returns a checksum that ties checkpoints to this run. The number of frames is no part of it, so that a run can be
+    /// extended.
     pub fn sum(&self) -> u32 {
         let any_length = Self {
             frames: 0,
@@ -103,10 +104,10 @@ impl Start {
         any_length.text().map_or(0, |text| crc32fast::hash(&text))
     }
 
-    /// What the run in `folder` (`DIR/checkpoints`) began with.
+    /// Reads the start of the run in `folder` (`DIR/checkpoints`).
     ///
     /// # Errors
-    /// It is not there, or damaged.
+    /// If it is missing or damaged.
     pub fn read(folder: &Path) -> Result<Self, OutputError> {
         let path = folder.join(NAME);
         let text = fs::read(&path)
@@ -115,10 +116,10 @@ impl Start {
             .map_err(|error| OutputError::usage(&path, format!("it is damaged: {error}")))
     }
 
-    /// The scene, from this and the copies in `folder` alone.
+    /// Builds the scene from this value and the copies in `folder` alone.
     ///
     /// # Errors
-    /// A copy is not what it was; or this program reads the scene differently.
+    /// If a copy was altered, or this program cannot read the scene.
     pub fn scene(&self, folder: &Path) -> Result<Scene, StartError> {
         let files = folder.join(FILES);
         for kept in &self.files {
@@ -147,16 +148,16 @@ impl Start {
     }
 }
 
-/// Why a scene that was kept cannot be read again.
+/// An error about the scene of a run.
 #[derive(Debug)]
 pub enum StartError {
-    /// A copy was damaged.
+    /// A copy of a file is missing or was altered.
     File(OutputError),
-    /// The scene is wrong for this program.
+    /// This program cannot read the scene.
     Scene(Box<SceneError>),
 }
 
-/// Counts and sums up what is written to it.
+/// A writer that counts bytes and computes their checksum.
 #[derive(Clone, Default)]
 struct Summed {
     bytes: u64,
@@ -174,7 +175,7 @@ impl Write for Summed {
     }
 }
 
-/// Writes to one, and sums up what went there.
+/// A writer that passes bytes on to the first writer and to the checksum.
 struct Both<'a, W>(&'a mut W, &'a mut Summed);
 
 impl<W: Write> Write for Both<'_, W> {

@@ -1,4 +1,4 @@
-//! The folder of checkpoints: the newest two, each whole or not there.
+//! The folder of checkpoints: the newest two, each whole or absent.
 
 use std::fs::{self, File};
 use std::io::BufReader;
@@ -11,36 +11,45 @@ use crate::files::{Durability, OutputError, sync_folder, write_whole};
 
 const ENDING: &str = "checkpoint";
 
-/// Checkpoints that are kept: the last one, and the one before in case a disk damages it.
+/// Number of checkpoints that are kept: the last one, and the one before in case the last is damaged.
 const KEPT: usize = 2;
 
-/// Checkpoints of a run, by frame.
+/// The checkpoints of a run.
+///
+/// ```
+/// use lahar_io::checkpoint::Store;
+///
+/// let folder = tempfile::tempdir()?;
+/// let newest = Store::new(folder.path()).newest(|_| Ok(()));
+/// assert!(newest.found.is_none() && newest.refused.is_empty());
+/// # Ok::<(), std::io::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Store {
     folder: PathBuf,
 }
 
-/// What there is to go on from.
+/// The newest usable checkpoint, with the ones that were passed over.
 #[derive(Debug)]
 pub struct Newest {
-    /// The newest checkpoint that can be used; `None`: from the start.
+    /// The newest checkpoint that can be used: path, header and state. `None`: the run begins at its start.
     pub found: Option<(PathBuf, Header, Checkpoint)>,
-    /// Newer ones, and why they cannot be used.
+    /// An error for each newer checkpoint that cannot be used.
     pub refused: Vec<OutputError>,
 }
 
 impl Store {
-    /// Those in `folder`.
+    /// Refers to the checkpoints in `folder`.
     pub fn new(folder: &Path) -> Self {
         Self {
             folder: folder.to_owned(),
         }
     }
 
-    /// Adds the checkpoint after a frame, and removes all but the newest two. When this returns it is on the disk.
+    /// Writes a checkpoint, waits until it is on the disk, and removes all but the newest two. Returns its path.
     ///
     /// # Errors
-    /// If it cannot be written; those that were there stay.
+    /// If it cannot be written; the older checkpoints stay.
     pub fn add(&self, header: &Header, checkpoint: &Checkpoint) -> Result<PathBuf, OutputError> {
         let name = format!("{:06}.{ENDING}", header.progress.frame);
         let path = self.folder.join(name);
@@ -54,7 +63,7 @@ impl Store {
         Ok(path)
     }
 
-    /// The checkpoints that are there, by frame, the newest first.
+    /// Returns the frames and paths of all checkpoints, the newest first.
     pub fn all(&self) -> Vec<(u64, PathBuf)> {
         let Ok(entries) = fs::read_dir(&self.folder) else {
             return Vec::new();
@@ -72,7 +81,7 @@ impl Store {
         all
     }
 
-    /// The newest checkpoint that is whole and that `usable` has nothing against.
+    /// Reads the newest checkpoint that is whole and that `usable` accepts. `usable` returns the reason if it does not.
     pub fn newest(&self, usable: impl Fn(&Header) -> Result<(), String>) -> Newest {
         let mut refused = Vec::new();
         for (_, path) in self.all() {
@@ -150,13 +159,13 @@ mod tests {
         let found = |newest: &Newest| newest.found.as_ref().map(|found| found.1.progress.frame);
         let newest = store.newest(|_| Ok(()));
         assert_eq!((found(&newest), newest.refused.len()), (Some(2_000_000), 0));
-        // Not one that its owner cannot use ..
+        // A checkpoint that the caller cannot use is passed over ..
         let newest = store.newest(|header| match header.progress.frame {
             2_000_000 => Err("not that one".to_owned()),
             _ => Ok(()),
         });
         assert_eq!((found(&newest), newest.refused.len()), (Some(1_000_000), 1));
-        // .. nor one that is cut.
+        // .. and so is one that is cut.
         let path = &store.all()[0].1;
         let bytes = fs::read(path).unwrap();
         fs::write(path, &bytes[..bytes.len() - 5]).unwrap();

@@ -1,5 +1,5 @@
-//! `.bgeo`: Houdini's classic binary geometry, version 5, as Houdini up to 11 wrote it and later ones and Partio read
-//! it. Everything is big-endian and has 32 bits.
+//! `.bgeo`: Houdini's classic binary geometry, version 5. Houdini up to 11 wrote it; later versions and Partio read it.
+//! All numbers are big-endian and have 32 bits.
 //!
 //! ```text
 //! "Bgeo" 'V' 5 | points primitives point-groups primitive-groups | attributes of points, vertices, primitives, the whole
@@ -17,7 +17,7 @@ use super::rows::{AsBytes, Column, Component, in_space, write_rows};
 const BIG_ENDIAN: AsBytes = AsBytes {
     f32: |x, out| out.extend(x.to_be_bytes()),
     f64: |x, out| out.extend((x as f32).to_be_bytes()),
-    // Houdini's whole numbers have a sign: the same bits.
+    // Houdini's whole numbers have a sign; the bits stay the same.
     u32: |x, out| out.extend(x.to_be_bytes()),
 };
 
@@ -25,7 +25,7 @@ const FLOAT: i32 = 0;
 const INTEGER: i32 = 1;
 const VECTOR: i32 = 5;
 
-/// What a file ends with: no further blocks.
+/// End of a file: no further blocks.
 const END: [u8; 2] = [0x00, 0xff];
 
 pub(super) const INFO: FormatInfo = FormatInfo {
@@ -85,7 +85,7 @@ pub(super) fn write<W: Write>(mut writer: W, snapshot: &Snapshot) -> io::Result<
     Ok(writer)
 }
 
-/// What Houdini calls a field: `v` is what it moves and blurs points by.
+/// Returns Houdini's name of a field. Houdini moves and blurs points by `v`.
 fn name(field: Field) -> &'static str {
     match field {
         Field::Velocity => "v",
@@ -93,7 +93,7 @@ fn name(field: Field) -> &'static str {
     }
 }
 
-/// The definition of an attribute, all defaults 0.
+/// Appends the definition of an attribute, with all defaults 0.
 fn attribute(out: &mut Vec<u8>, name: &str, size: usize, kind: i32) {
     let short = |number: usize| u16::try_from(number).expect("names and sizes are short");
     out.extend(short(name.len()).to_be_bytes());

@@ -1,4 +1,4 @@
-//! `.ply`: little-endian vertices, a property a number. The names are those by which scenes read particles (x, vx, C11,
+//! `.ply`: little-endian vertices with one property per number. Scenes read particles by the same names (x, vx, C11,
 //! F11, ..), so that a frame can be the start of another run.
 
 use std::io::{self, Write};
@@ -32,7 +32,7 @@ pub(super) fn write<W: Write>(mut writer: W, snapshot: &Snapshot) -> io::Result<
             Data::F64(_) => "double",
             Data::U32(_) => "uint",
         };
-        // Points have three coordinates everywhere; the rest is as the simulation has it.
+        // Points need three coordinates; other fields keep the dimension of the simulation.
         let components = match info.field {
             Field::Position => in_space(info.field, d),
             _ => as_is(info.field, d),
@@ -53,7 +53,7 @@ pub(super) fn write<W: Write>(mut writer: W, snapshot: &Snapshot) -> io::Result<
     Ok(writer)
 }
 
-/// The name of number `k` of a field.
+/// Returns the name of number `k` of a field.
 fn property(field: Field, k: usize, dimension: usize) -> String {
     const AXES: [&str; 3] = ["x", "y", "z"];
     let letter = match field {

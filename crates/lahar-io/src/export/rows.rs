@@ -1,25 +1,25 @@
-//! Numbers of particles as bytes, row by row or column by column.
+//! Numbers of particles as bytes, one particle after the other.
 
 use std::io::{self, Write};
 
 use lahar::particles::Shape;
 use lahar::{Data, Field};
 
-/// Bytes are handed on in pieces of about this size.
-const PIECE: usize = 1 << 18;
+/// Number of bytes that are collected before they are written.
+const CHUNK: usize = 1 << 18;
 
-/// One number of a particle in a file.
+/// One number of a particle in a file, and its source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Component {
-    /// This one of the field's.
+    /// The number of the field with this index.
     Of(usize),
-    /// 0, which 2D lacks.
+    /// The number 0, which fills up 2D fields.
     Zero,
-    /// 1, which 2D lacks.
+    /// The number 1, which fills up 2D fields.
     One,
 }
 
-/// The numbers of a field in three dimensions.
+/// Returns the numbers of a field filled up to three dimensions.
 pub(super) fn in_space(field: Field, dimension: usize) -> Vec<Component> {
     let inside = |axis: usize| axis < dimension;
     match field.info().shape {
@@ -40,14 +40,14 @@ pub(super) fn in_space(field: Field, dimension: usize) -> Vec<Component> {
     }
 }
 
-/// The numbers of a field as they are.
+/// Returns the numbers of a field in its own dimension.
 pub(super) fn as_is(field: Field, dimension: usize) -> Vec<Component> {
     (0..field.info().shape.len(dimension))
         .map(Component::Of)
         .collect()
 }
 
-/// A field in a file: its numbers, how many a particle has of them in memory, and which are written.
+/// A field in a file: its numbers, their count per particle, and the ones that are written.
 pub(super) struct Column<'a> {
     pub(super) data: &'a Data,
     pub(super) width: usize,
@@ -55,7 +55,7 @@ pub(super) struct Column<'a> {
 }
 
 impl Column<'_> {
-    /// Its numbers of one particle, each by the function for its type.
+    /// Appends the numbers of one particle, each by the function for its type.
     fn push(&self, row: usize, as_bytes: &AsBytes, out: &mut Vec<u8>) {
         for component in &self.components {
             let at = |k: &usize| row * self.width + k;
@@ -71,14 +71,14 @@ impl Column<'_> {
     }
 }
 
-/// How numbers become bytes.
+/// Functions that append a number as bytes.
 pub(super) struct AsBytes {
     pub(super) f32: fn(f32, &mut Vec<u8>),
     pub(super) f64: fn(f64, &mut Vec<u8>),
     pub(super) u32: fn(u32, &mut Vec<u8>),
 }
 
-/// As they are in the memory of most machines.
+/// Little-endian bytes, as in the memory of most machines.
 pub(super) const LITTLE_ENDIAN: AsBytes = AsBytes {
     f32: |x, out| out.extend(x.to_le_bytes()),
     f64: |x, out| out.extend(x.to_le_bytes()),
@@ -92,17 +92,17 @@ pub(super) fn write_rows(
     columns: &[Column<'_>],
     as_bytes: &AsBytes,
 ) -> io::Result<()> {
-    let mut piece = Vec::with_capacity(PIECE + (1 << 10));
+    let mut chunk = Vec::with_capacity(CHUNK + (1 << 10));
     for row in 0..count {
         for column in columns {
-            column.push(row, as_bytes, &mut piece);
+            column.push(row, as_bytes, &mut chunk);
         }
-        if piece.len() >= PIECE {
-            writer.write_all(&piece)?;
-            piece.clear();
+        if chunk.len() >= CHUNK {
+            writer.write_all(&chunk)?;
+            chunk.clear();
         }
     }
-    writer.write_all(&piece)
+    writer.write_all(&chunk)
 }
 
 #[cfg(test)]

@@ -1,5 +1,5 @@
-//! `.pvd`: ParaView's list of files by time. It is whole after every frame: each entry is written over the end tags
-//! together with new ones, in one go.
+//! `.pvd`: ParaView's list of files by time. It is whole after every frame: a single write replaces the end tags by the
+//! new entry and end tags.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -10,17 +10,17 @@ use crate::files::{Durability, Length, OutputError, write_whole_io};
 const HEAD: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n";
 const TAIL: &str = "</Collection>\n</VTKFile>\n";
 
-/// The growing file.
+/// A growing list of files by time.
 #[derive(Debug)]
 pub(crate) struct TimeSeries {
     path: PathBuf,
     file: File,
-    /// Where the end tags stand.
+    /// Place of the end tags.
     end: u64,
 }
 
 impl TimeSeries {
-    /// A new list at `path` that begins with the first `keep` entries of the one that is there, if any.
+    /// Creates the list `path`, beginning with the first `keep` entries of the list that is there.
     pub(crate) fn start(path: &Path, keep: usize) -> io::Result<Self> {
         let mut text = HEAD.to_owned();
         if keep > 0 {
@@ -43,19 +43,19 @@ impl TimeSeries {
         })
     }
 
-    /// Where it is.
+    /// Returns the path of the list.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
-    /// How it stands without the end tags, on the disk when this returns; `run` is the run's folder.
+    /// Waits until the list is on the disk and returns its length without the end tags; `run` is the run's folder.
     pub(crate) fn settle(&self, run: &Path) -> Result<Length, OutputError> {
         let at = OutputError::at(&self.path);
         self.file.sync_data().map_err(&at)?;
         Length::of(run, &self.path, self.end).map_err(&at)
     }
 
-    /// Adds a file, named from the list's folder, of a moment \[s\].
+    /// Adds a file of the time `time` \[s\]; `file` is relative to the list's folder.
     pub(crate) fn push(&mut self, time: f64, file: &str) -> io::Result<()> {
         let entry = format!("<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>\n");
         self.file.seek(SeekFrom::Start(self.end))?;

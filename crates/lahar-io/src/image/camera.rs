@@ -23,30 +23,42 @@ pub(super) fn unit(a: V) -> V {
     a.map(|c| c / length)
 }
 
-/// Where one looks from, and how.
+/// A perspective camera.
+///
+/// ```
+/// use lahar_io::image::Camera;
+///
+/// let unit_box = ([0.0; 3], [1.0; 3]);
+/// let camera = Camera::showing(unit_box, 1, 4.0 / 3.0);
+/// assert!(camera.eye[1] > camera.target[1], "it looks down");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
-    /// Where it stands \[m\].
+    /// Position of the camera \[m\].
     pub eye: [f32; 3],
-    /// What it looks at \[m\].
+    /// Point in the middle of the picture \[m\].
     pub target: [f32; 3],
-    /// What is up.
+    /// Direction that points up in the picture.
     pub up: [f32; 3],
     /// Angle between the lower and the upper edge of the picture \[rad\].
     pub angle: f32,
 }
 
-/// Angles of the usual view \[rad\]: how far to the side, how far from above, how wide.
+/// Angle of the usual view from the front to the right \[rad\].
 const SIDE: f32 = 0.52;
+
+/// Angle of the usual view above the horizon \[rad\].
 const ABOVE: f32 = 0.42;
+
+/// Angle between the lower and the upper edge of the usual view \[rad\].
 const WIDE: f32 = 0.55;
 
-/// What part of the picture a whole box may fill.
+/// Largest part of the picture's width and height that a box fills.
 const FILL: f32 = 0.94;
 
 impl Camera {
-    /// From the front, somewhat from the right and above, so far away that the box fills the picture of the given
-    /// width/height; `up` is the axis that points up.
+    /// Shows a whole box (lower and upper corner \[m\]) from the front, somewhat from the right and above. `up` is the axis
+    /// that points up, `aspect` the picture's width divided by its height.
     pub fn showing(bounds: ([f64; 3], [f64; 3]), up: usize, aspect: f32) -> Self {
         let (right, front) = ground(up);
         let mut direction = [0.0; 3];
@@ -56,7 +68,7 @@ impl Camera {
         Self::showing_from(bounds, up, aspect, direction, WIDE)
     }
 
-    /// So far from `center` in `direction` that `height` \[m\] fill the angle there \[rad\].
+    /// Looks at `center` \[m\] from `direction`, so far away that `height` \[m\] fill the angle of view `angle` \[rad\].
     pub fn framing(
         center: [f64; 3],
         height: f64,
@@ -76,8 +88,8 @@ impl Camera {
         }
     }
 
-    /// The same from another direction (towards the camera), and with another angle between the lower and the upper
-    /// edge of the picture \[rad\].
+    /// Shows a whole box as [`Camera::showing`] does, from another `direction` (towards the camera), with `angle` \[rad\]
+    /// between the lower and the upper edge of the picture.
     pub fn showing_from(
         (min, max): ([f64; 3], [f64; 3]),
         up: usize,
@@ -98,7 +110,7 @@ impl Camera {
             angle,
         };
         let corners = corners(min, max);
-        // Twice: shift to the middle of what is seen, then to the right distance.
+        // Each pass finds the distance, then shifts the middle of the visible box to the middle of the picture.
         for _ in 0..3 {
             let fits = |distance: f32, camera: &Self| {
                 let placed = Self {
@@ -130,14 +142,14 @@ impl Camera {
         camera
     }
 
-    /// Right, up and forward.
+    /// Returns the unit vectors to the right, up and forward.
     pub(super) fn frame(&self) -> [V; 3] {
         let forward = unit(sub(self.target, self.eye));
         let right = unit(cross(forward, self.up));
         [right, cross(right, forward), forward]
     }
 
-    /// The smallest and largest picture coordinates (−1 to 1) of `points`.
+    /// Returns the smallest and largest picture coordinates (−1 to 1) of `points`.
     fn seen(&self, points: &[V], aspect: f32) -> [[f32; 2]; 2] {
         let [right, up, forward] = self.frame();
         let scale = 1.0 / (0.5 * self.angle).tan();
@@ -162,7 +174,7 @@ impl Camera {
     }
 }
 
-/// The directions to the right and to the front on the ground, for the axis that points up.
+/// Returns the directions to the right and to the front on the ground; `up` is the axis that points up.
 fn ground(up: usize) -> (V, V) {
     match up {
         0 => ([0.0, 1.0, 0.0], [0.0, 0.0, 1.0]),
@@ -171,7 +183,7 @@ fn ground(up: usize) -> (V, V) {
     }
 }
 
-/// The eight corners of a box; two that differ in one bit of their index share an edge.
+/// Returns the eight corners of a box. Two that differ in one bit of their index share an edge.
 pub(super) fn corners(min: V, max: V) -> [V; 8] {
     core::array::from_fn(|corner| {
         core::array::from_fn(|axis| {

@@ -1,8 +1,8 @@
-//! A GIF from pictures, all in one palette, so that nothing flickers.
+//! A GIF of pictures, all in one palette, so that nothing flickers.
 //!
-//! A GIF's palette stands before its first frame, but a good one needs all of them. So pictures are kept, packed,
-//! while colors are counted; at the end the palette is cut from the counts and the frames are written, each only
-//! where it differs from the one before.
+//! A GIF's palette stands before its first frame, but a good palette needs all frames. So pictures are kept, compressed,
+//! while their colors are counted. At the end the palette is computed from the counts, and the frames are written, each
+//! only where it differs from the one before.
 
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -15,25 +15,38 @@ use super::Picture;
 use super::palette::Color;
 use crate::files::{Durability, write_whole_io};
 
-/// Bits a channel by which colors are told apart while counting.
+/// Bits per channel by which colors are told apart while they are counted.
 const BITS: u32 = 5;
 
-/// Colors of a palette; one more is kept for "as before".
+/// Colors of a palette; one more stands for "as in the frame before".
 const COLORS: usize = 255;
 
-/// Pictures of one size on their way to a GIF.
+/// A film: pictures of one size that become a GIF.
+///
+/// ```
+/// use lahar_io::image::{Film, Picture};
+///
+/// let mut film = Film::new(25.0);
+/// for shade in [0, 100, 200] {
+///     film.push(&Picture { width: 16, height: 16, rgb: vec![shade; 3 * 16 * 16] })?;
+/// }
+/// let mut gif = Vec::new();
+/// film.write(&mut gif)?;
+/// assert!(gif.starts_with(b"GIF89a"));
+/// # Ok::<(), std::io::Error>(())
+/// ```
 pub struct Film {
     size: Option<(u32, u32)>,
-    /// Pictures a second.
+    /// Pictures per second.
     rate: f64,
-    /// Packed pictures.
+    /// Compressed pictures, in order.
     frames: Vec<Vec<u8>>,
-    /// By the leading bits of a color: pixels, and the sum of their channels.
+    /// For the leading bits of each color: the number of pixels, and the sums of their channels.
     counts: Vec<(u64, [u64; 3])>,
 }
 
 impl Film {
-    /// A film that shows `rate` pictures a second, on average: the format counts in hundredths of a second.
+    /// Begins a film of `rate` pictures per second on average: the format counts in hundredths of a second.
     pub fn new(rate: f64) -> Self {
         Self {
             size: None,
@@ -43,12 +56,12 @@ impl Film {
         }
     }
 
-    /// Pictures so far.
+    /// Returns the number of pictures so far.
     pub fn len(&self) -> usize {
         self.frames.len()
     }
 
-    /// Whether there is none yet.
+    /// Returns true if there is no picture yet.
     pub fn is_empty(&self) -> bool {
         self.frames.is_empty()
     }
@@ -56,7 +69,7 @@ impl Film {
     /// Adds a picture.
     ///
     /// # Errors
-    /// If its size differs from that of the first.
+    /// If its size differs from that of the first picture.
     pub fn push(&mut self, picture: &Picture) -> io::Result<()> {
         let size = (picture.width, picture.height);
         if *self.size.get_or_insert(size) != size || u16::try_from(size.0.max(size.1)).is_err() {
@@ -82,7 +95,7 @@ impl Film {
         }
     }
 
-    /// The last picture as [`Film::unpack`] takes it: width, height and length as `u32`, and its packed pixels.
+    /// Returns the last picture as [`Film::unpack`] reads it: width, height and length as `u32`, and compressed pixels.
     pub(crate) fn last_packed(&self) -> Vec<u8> {
         let (Some((width, height)), Some(packed)) = (self.size, self.frames.last()) else {
             return Vec::new();
@@ -91,9 +104,14 @@ impl Film {
         [head.as_flattened(), packed].concat()
     }
 
-    /// Adds the pictures that [`Film::last_packed`] has given, one after the other, as if they were pushed again.
+    /// Adds pictures that [`Film::last_packed`] returned, as if they were pushed again.
     pub(crate) fn unpack(&mut self, mut pictures: &[u8]) -> io::Result<()> {
-        let wrong = || io::Error::new(io::ErrorKind::InvalidData, "it holds no pictures");
+        let wrong = || {
+            io::Error::new(
+                io::ErrorKind::InvalidData,
+                "these are not pictures of a film",
+            )
+        };
         while !pictures.is_empty() {
             let (head, rest) = pictures.split_at_checked(12).ok_or_else(wrong)?;
             let [width, height, length] =
@@ -116,7 +134,7 @@ impl Film {
         Ok(())
     }
 
-    /// Writes the GIF file at `path`; it plays for ever.
+    /// Writes the GIF file `path`, whole or not at all. It plays in a loop.
     ///
     /// # Errors
     /// If there is no picture, or writing fails.
@@ -127,7 +145,7 @@ impl Film {
         })
     }
 
-    /// Writes the GIF.
+    /// Writes the film as GIF.
     ///
     /// # Errors
     /// If there is no picture, or writing fails.
@@ -148,7 +166,7 @@ impl Film {
 
         let mut shown: Vec<u8> = Vec::new();
         let mut rgb = Vec::new();
-        // Hundredths of a second from the start to the end of a picture.
+        // Time from the start to the end of a picture [1/100 s].
         let end = |index: usize| (100.0 * index as f64 / self.rate).round();
         for (index, packed) in self.frames.iter().enumerate() {
             rgb.clear();
@@ -172,10 +190,10 @@ impl Film {
     }
 }
 
-/// The palette's index for "as in the frame before".
+/// Index in the palette that stands for "as in the frame before".
 const AS_BEFORE: u8 = COLORS as u8;
 
-/// The smallest rectangle that differs, unchanged pixels in it left out.
+/// Returns the smallest rectangle that differs, with unchanged pixels left out.
 fn changed(shown: &[u8], new: &[u8], width: u16, height: u16) -> gif::Frame<'static> {
     let whole = gif::Frame {
         width,
@@ -190,7 +208,7 @@ fn changed(shown: &[u8], new: &[u8], width: u16, height: u16) -> gif::Frame<'sta
     let differs = |row: usize| shown[row * w..][..w] != new[row * w..][..w];
     let rows = usize::from(height);
     let Some(top) = (0..rows).find(|&row| differs(row)) else {
-        // A frame has at least a pixel.
+        // A frame must have at least one pixel.
         return gif::Frame {
             width: 1,
             height: 1,
@@ -230,7 +248,7 @@ fn bin(color: Color) -> usize {
     part(0) << (2 * BITS) | part(1) << BITS | part(2)
 }
 
-/// A bin that holds pixels.
+/// A group of colors with equal leading bits, with its mean color and weight.
 #[derive(Clone, Copy)]
 struct Counted {
     bin: usize,
@@ -240,13 +258,13 @@ struct Counted {
 
 struct Palette {
     colors: Vec<Color>,
-    /// The palette's index by bin.
+    /// Index in the palette of each bin.
     nearest: Vec<u8>,
 }
 
 impl Palette {
-    /// Median cut: the group of colors with the largest spread is halved along its longest side, until there are
-    /// enough.
+    /// Chooses the colors by median cut: halves the group of colors with the largest spread along its longest side, until
+    /// there are enough groups.
     fn cut(counts: &[(u64, [u64; 3])]) -> Self {
         let mut all: Vec<Counted> = counts
             .iter()
@@ -255,7 +273,7 @@ impl Palette {
             .map(|(bin, (count, sum))| Counted {
                 bin,
                 color: sum.map(|sum| sum as f64 / *count as f64),
-                // Small areas count for more than their share: edges and highlights are few but seen.
+                // Small areas count for more than their share: edges and highlights are small but visible.
                 weight: (*count as f64).sqrt(),
             })
             .collect();
@@ -294,7 +312,7 @@ impl Palette {
         let colors: Vec<Color> = groups
             .iter()
             .map(|&(start, end)| {
-                // The one color that dominates a group stays exact: large even areas must not shift.
+                // A color that dominates its group stays exact, so that large even areas do not shift.
                 let group = &all[start..end];
                 let total: f64 = group.iter().map(|c| c.weight * c.weight).sum();
                 let color = group
@@ -328,7 +346,7 @@ fn mean(group: &[Counted]) -> [f64; 3] {
     core::array::from_fn(|i| group.iter().map(|c| c.weight * c.color[i]).sum::<f64>() / total)
 }
 
-/// The axis along which a group spreads most, and its weighted squared spread there.
+/// Returns the channel in which a group spreads most, and its weighted squared spread there.
 fn widest(group: &[Counted]) -> (usize, f64) {
     if group.len() < 2 {
         return (0, 0.0);
@@ -346,7 +364,7 @@ fn widest(group: &[Counted]) -> (usize, f64) {
         .unwrap_or((0, 0.0))
 }
 
-/// Squared distance, green counting most, as for the eye.
+/// Returns the squared distance of two colors; green counts most, as for the eye.
 fn distance(a: [f64; 3], b: Color) -> f64 {
     [2.0, 4.0, 3.0]
         .iter()

@@ -1,7 +1,7 @@
-//! 2D: particles melt into one filled shape with a smooth edge.
+//! Pictures in 2D: particles melt into one filled shape with a smooth edge.
 //!
-//! Every particle adds a bump w = (1 − r²/h²)² around it; where the bumps sum to more than a threshold there is
-//! material, colored by the bumps' mean. Neighbors close the gaps between them, while a lone particle is a disc.
+//! Every particle adds a bump w = (1 − r²/h²)² around it. Material is drawn where the bumps sum to more than a threshold,
+//! in the mean of their colors. Neighbors close the gaps between them, while a lone particle is a disc.
 
 use std::ops::Range;
 
@@ -10,19 +10,19 @@ use super::palette::{self, ToScreen};
 use super::renderer::{Solid, Style};
 use super::{Picture, Scenery};
 
-/// Reach h of a bump, in sizes of a particle: gaps between neighbors up to two and a half sizes wide are filled.
+/// Reach h of a bump, in sizes of a particle. Gaps between neighbors are filled up to two and a half sizes.
 pub(super) const REACH: f32 = 2.0;
 
-/// Material is where bumps sum to this.
+/// Sum of bumps above which material is drawn.
 pub(super) const THRESHOLD: f32 = 0.75;
 
 /// Half the width of the soft edge, in sums of bumps.
 const SOFT: f32 = 0.1;
 
-/// Room around the domain, in parts of its larger side.
+/// Margin around the domain, in parts of its larger side.
 const MARGIN: f64 = 0.025;
 
-/// Where the scene is on the picture.
+/// Draws 2D scenes: the place of the scene in the picture.
 #[derive(Clone, Debug)]
 pub(super) struct FlatPainter {
     width: usize,
@@ -30,9 +30,9 @@ pub(super) struct FlatPainter {
     samples: usize,
     /// World position \[m\] of the picture's top left corner.
     corner: [f64; 2],
-    /// Samples a meter.
+    /// Samples per meter.
     scale: f64,
-    /// The walls as left, right, bottom, top \[m\].
+    /// Positions of the left, right, bottom and top wall \[m\].
     walls: Option<[f64; 4]>,
     background: palette::Color,
 }
@@ -43,7 +43,7 @@ impl FlatPainter {
         let room = MARGIN * (max[0] - min[0]).max(max[1] - min[1]);
         let extent = [0, 1].map(|axis| (max[axis] - min[axis] + 2.0 * room).max(f64::MIN_POSITIVE));
         let pixels = (f64::from(style.width) / extent[0]).min(f64::from(style.height) / extent[1]);
-        // Even sizes: some video formats take no others.
+        // Even sizes, which some video formats need.
         let even = |length: f64| ((length * pixels / 2.0).round() as usize * 2).max(16);
         Self {
             width: even(extent[0]),
@@ -60,7 +60,7 @@ impl FlatPainter {
         [self.width as u32, self.height as u32]
     }
 
-    /// Shows `height` \[m\] around `center` \[m\], on the whole of the picture.
+    /// Shows `height` \[m\] around `center` \[m\] in a picture of the full size.
     pub(super) fn frame(&mut self, style: &Style, center: [f64; 2], height: f64) {
         let pixels = f64::from(style.height) / height;
         self.width = style.width as usize / 2 * 2;
@@ -74,7 +74,7 @@ impl FlatPainter {
 
     pub(super) fn render(&self, particles: &DrawableParticles, solids: &[Solid]) -> Picture {
         let (columns, rows) = (self.width * self.samples, self.height * self.samples);
-        // Sum of bumps, then of bump × color.
+        // Per sample: the sum of bumps, and of bump × color.
         let mut sums = vec![[0.0_f32; 4]; columns * rows];
         for ((x, &size), color) in particles
             .position
@@ -82,7 +82,7 @@ impl FlatPainter {
             .zip(&particles.size)
             .zip(&particles.color)
         {
-            // Never so small that it falls between samples.
+            // At least 0.9 pixels, so that no particle falls between samples.
             let reach = (REACH * size * self.scale as f32).max(0.9 * self.samples as f32);
             let u = ((f64::from(x[0]) - self.corner[0]) * self.scale) as f32 - 0.5;
             let v = ((self.corner[1] - f64::from(x[1])) * self.scale) as f32 - 0.5;
@@ -146,7 +146,7 @@ impl FlatPainter {
         }
     }
 
-    /// Columns and rows within the walls; all without walls. A particle at a wall does not show beyond it.
+    /// Returns the columns and rows within the walls, all if there are none. A particle at a wall does not show beyond it.
     fn inside(&self) -> [Range<usize>; 2] {
         let Some([left, right, bottom, top]) = self.walls else {
             return [0..self.width, 0..self.height];
@@ -160,7 +160,7 @@ impl FlatPainter {
         ]
     }
 
-    /// Colliders, with soft edges, before the particles that touch them.
+    /// Draws colliders, with soft edges, over the particles that touch them.
     fn draw_solids(&self, light: &mut [[f32; 3]], solids: &[Solid]) {
         let pixels = self.scale / self.samples as f64;
         let [columns, rows] = self.inside();
@@ -178,7 +178,7 @@ impl FlatPainter {
         }
     }
 
-    /// A thin line just outside the domain, so that it hides nothing.
+    /// Draws a thin line just outside the domain, where it hides nothing.
     fn draw_walls(&self, light: &mut [[f32; 3]]) {
         if self.walls.is_none() {
             return;
@@ -190,7 +190,7 @@ impl FlatPainter {
                 light[row * self.width + column] = line;
             }
         };
-        // One before the start is beyond the picture's end where the start is 0.
+        // If the start is 0, the line before it wraps to a number beyond the picture.
         let (left, top) = (columns.start.wrapping_sub(1), rows.start.wrapping_sub(1));
         dot(top, left);
         dot(top, columns.end);
@@ -205,10 +205,11 @@ impl FlatPainter {
     }
 }
 
-/// How far walls go from the background to gray.
+/// Share of gray in the color of walls, the rest being background.
 const WALL: f32 = 0.25;
 
-/// Samples within `reach` of `center`, of `count`; none for what is outside or not a number.
+/// Returns the first and the last of `count` samples within `reach` of `center`; none if all are outside, or a number is
+/// not finite.
 fn span(center: f32, reach: f32, count: usize) -> Option<(usize, usize)> {
     let low = (center - reach).ceil().max(0.0);
     let high = (center + reach).floor().min(count as f32 - 1.0);

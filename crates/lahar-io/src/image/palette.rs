@@ -1,34 +1,37 @@
-//! Colors: those of the Taichi examples for what they have, others in their spirit; light and what screens show.
+//! Colors of materials, bodies and scales, and the conversion between sRGB and linear light. Fluids, jelly and snow have
+//! the colors of the Taichi examples; the others match them.
 
-/// Red, green, blue in sRGB.
+/// A color: red, green and blue in sRGB.
 pub type Color = [u8; 3];
 
 const fn hex(rgb: u32) -> Color {
     [(rgb >> 16) as u8, (rgb >> 8) as u8, rgb as u8]
 }
 
-/// Behind everything.
+/// Color of the background.
 pub const BACKGROUND: Color = hex(0x11_2F41);
 
-/// Colors of fluids, solids, and grains or snow; a second material of a kind takes the second color, and so on.
+/// Colors of fluids. The second fluid has the second color, and so on.
 const FLUIDS: [Color; 4] = [
     hex(0x06_8587),
     hex(0x3F_7FD6),
     hex(0xD9_9A2B),
     hex(0x8A_5A44),
 ];
+/// Colors of elastic solids.
 const SOLIDS: [Color; 4] = [
     hex(0xED_553B),
     hex(0xF2_B134),
     hex(0x9B_5DE5),
     hex(0x5B_C26A),
 ];
+/// Colors of snow, grains and dust.
 const GRAINS: [Color; 3] = [hex(0xEE_EEF0), hex(0xD8_B982), hex(0xA9_8467)];
 
-/// Colors of bodies, by number.
-/// Of colliders that have none of their own.
+/// Color of colliders that have none of their own.
 pub const COLLIDER: Color = hex(0x8A_98_A3);
 
+/// Colors of bodies by number.
 const BODIES: [Color; 8] = [
     hex(0x06_8587),
     hex(0xED_553B),
@@ -40,12 +43,19 @@ const BODIES: [Color; 8] = [
     hex(0xD9_7AA6),
 ];
 
-/// The color of a body that has none of its own, by its number.
+/// Returns the color of the body with this number, for bodies that have none of their own.
 pub fn body_color(number: usize) -> Color {
     BODIES[number % BODIES.len()]
 }
 
-/// A color a material, by the names of their models: water teal, jelly red, snow white.
+/// Returns one color per material, given the names of their models: water is teal, jelly red, snow white.
+///
+/// ```
+/// use lahar_io::image::model_colors;
+///
+/// let colors = model_colors(&["fluid", "snow", "fluid"]);
+/// assert_ne!(colors[0], colors[2], "two fluids can be told apart");
+/// ```
 pub fn model_colors(models: &[&str]) -> Vec<Color> {
     let mut seen = [0_usize; 3];
     models
@@ -63,9 +73,9 @@ pub fn model_colors(models: &[&str]) -> Vec<Color> {
         .collect()
 }
 
-/// What a color becomes where its material is fast: lighter, towards white.
+/// Returns the color of fast material: lighter, towards white.
 pub(super) fn bright(color: Color) -> Color {
-    // White stays tellable from fast white by turning towards a cold blue.
+    // White turns towards a cold blue, so that fast and slow white can be told apart.
     let towards: Color = if color.iter().all(|&c| c > 0xD0) {
         [0xA8, 0xD4, 0xF0]
     } else {
@@ -74,12 +84,12 @@ pub(super) fn bright(color: Color) -> Color {
     core::array::from_fn(|i| ((f32::from(color[i]) * 0.35) + f32::from(towards[i]) * 0.65) as u8)
 }
 
-/// A color some part of the way to white.
+/// Mixes a color with white; `part` is the share of white.
 pub(super) fn lighter(color: Color, part: f32) -> Color {
     color.map(|c| (f32::from(c) + (255.0 - f32::from(c)) * part) as u8)
 }
 
-/// From slow to fast.
+/// Colors from slow to fast.
 pub const SPEED_RAMP: [Color; 5] = [
     hex(0x0D_5C86),
     hex(0x0D_979B),
@@ -88,7 +98,7 @@ pub const SPEED_RAMP: [Color; 5] = [
     hex(0xFF_FFFF),
 ];
 
-/// From low pressure to high.
+/// Colors from low pressure to high.
 pub const PRESSURE_RAMP: [Color; 5] = [
     hex(0x3B_3A8C),
     hex(0x8A_44A6),
@@ -97,13 +107,13 @@ pub const PRESSURE_RAMP: [Color; 5] = [
     hex(0xFC_F3A8),
 ];
 
-/// Below rest, at rest, above it: of J and of density.
+/// Colors of J and of density: below the value at rest, at rest, above it.
 pub const REST_RAMP: [Color; 3] = [hex(0x3D_86E0), hex(0xE4_E8EA), hex(0xED_553B)];
 
-/// What is not a number: cannot be overlooked.
+/// A color that cannot be overlooked, for values that are not numbers.
 const NOT_A_NUMBER: Color = hex(0xFF_00FF);
 
-/// The color at `at`, 0 to 1, of evenly spaced ones.
+/// Returns the color at `at` (0 to 1) along evenly spaced ones.
 pub fn along(ramp: &[Color], at: f32) -> Color {
     let Some(last) = ramp.len().checked_sub(1) else {
         return NOT_A_NUMBER;
@@ -121,7 +131,7 @@ pub fn along(ramp: &[Color], at: f32) -> Color {
     })
 }
 
-/// Linear light, 0 to 1, of an sRGB color.
+/// Converts an sRGB color to linear light (0 to 1).
 pub(super) fn linear(color: Color) -> [f32; 3] {
     color.map(|c| {
         let c = f32::from(c) / 255.0;
@@ -133,7 +143,7 @@ pub(super) fn linear(color: Color) -> [f32; 3] {
     })
 }
 
-/// From linear light to sRGB by a table, fine enough that every one of the 256 levels is met.
+/// Converts linear light to sRGB by a table, which is fine enough to give each of the 256 levels.
 pub(super) struct ToScreen(Vec<u8>);
 
 impl ToScreen {
@@ -160,7 +170,7 @@ impl ToScreen {
     }
 }
 
-/// `a` at 0, `b` at 1.
+/// Mixes two colors in linear light: `a` for part 0, `b` for part 1.
 pub(super) fn mix(a: [f32; 3], b: [f32; 3], part: f32) -> [f32; 3] {
     core::array::from_fn(|i| a[i] + (b[i] - a[i]) * part)
 }

@@ -1,9 +1,9 @@
-//! 3D: particles as lit balls over a floor, in the box of the domain.
+//! Pictures in 3D: particles as lit balls over a floor, in the box of the domain.
 //!
 //! ```text
-//! balls ─► depth and nearest particle a sample ─► depth smoothed ─► normals ─► light, shadow, corners in the dark ─► mean of samples
+//! balls ─► depth and nearest particle per sample ─► smoothed depth ─► normals ─► light, shadow, dark corners ─► mean of samples
 //! ```
-//! The smoothed depth makes a dense crowd of balls one surface, while lone ones stay balls: smoothing stops at jumps.
+//! Smoothing turns a dense crowd of balls into one surface. It stops at jumps of depth, so that lone balls stay balls.
 
 use core::f32::consts::TAU;
 
@@ -13,24 +13,26 @@ use super::palette::{self, ToScreen};
 use super::renderer::{Solid, Style};
 use super::{Picture, Scenery};
 
-/// Radius of a ball, in sizes of a particle.
+/// Radius of a ball, in sizes of its particle.
 const RADIUS: f32 = 0.9;
 
-/// How far depth is smoothed, and what is a jump of depth, in radii.
+/// Distance over which depth is smoothed, in radii.
 const SMOOTHING: f32 = 1.9;
+/// Smallest difference of depth that is a jump, in radii.
 const JUMP: f32 = 2.0;
 
-/// Samples a side of the map of what the light sees.
+/// Samples per side of the shadow map.
 const SHADOW: usize = 512;
 
-/// Steps of a march along a ray at the most.
+/// Most steps of a march along a ray.
 const MARCHES: usize = 96;
 
-/// A sample that shows no particle.
+/// Index that stands for a sample without a particle.
 const NOTHING: u32 = u32::MAX;
 
-/// Light that reaches everything, and the lamp's.
+/// Strength of the light that comes from everywhere.
 const AMBIENT: f32 = 0.42;
+/// Strength of the lamp.
 const LAMP: f32 = 0.78;
 
 #[derive(Clone, Debug)]
@@ -43,14 +45,14 @@ pub(super) struct PerspectivePainter {
     max: [f32; 3],
     up: usize,
     walls: bool,
-    /// Towards the lamp.
+    /// Direction towards the lamp.
     lamp: [f32; 3],
     background: palette::Color,
 }
 
-/// What each sample shows.
+/// Depth and particle of each sample.
 struct DepthBuffer {
-    /// Along the view \[m\]; infinite where there is nothing.
+    /// Distance along the view \[m\]; infinite if the sample shows nothing.
     depth: Vec<f32>,
     particle: Vec<u32>,
 }
@@ -60,7 +62,7 @@ impl PerspectivePainter {
         let (min, max) = scenery.bounds;
         let (width, height) = (style.width as usize / 2 * 2, style.height as usize / 2 * 2);
         let camera = Camera::showing(scenery.bounds, scenery.up, width as f32 / height as f32);
-        // Over the left shoulder of who looks.
+        // The lamp is over the left shoulder of the viewer.
         let [right, _, forward] = camera.frame();
         let mut lamp = add_scaled(add_scaled([0.0; 3], right, -0.45), forward, -0.35);
         lamp[scenery.up] += 1.0;
@@ -118,7 +120,7 @@ impl PerspectivePainter {
         }
     }
 
-    /// Where a ray, in its own length, comes into the box and where it leaves it.
+    /// Returns where a ray enters the box and where it leaves it, in lengths of `along`.
     fn crossing(&self, from: [f32; 3], along: [f32; 3]) -> Option<(f32, f32)> {
         let (mut enter, mut leave) = (0.0_f32, f32::INFINITY);
         for i in 0..3 {
@@ -129,7 +131,7 @@ impl PerspectivePainter {
         (enter < leave).then_some((enter, leave))
     }
 
-    /// Where a ray meets the floor inside the box \[m\], and how far away.
+    /// Returns the point where a ray meets the floor inside the box \[m\].
     fn floor(&self, from: [f32; 3], along: [f32; 3]) -> Option<[f32; 3]> {
         let distance = (self.min[self.up] - from[self.up]) / along[self.up];
         let at = add_scaled(from, along, distance);
@@ -137,7 +139,7 @@ impl PerspectivePainter {
         (distance > 0.0 && inside).then_some(at)
     }
 
-    /// Lines of a grid over the floor, some eight along its longer side.
+    /// Returns the color of the floor: a grid of lines, about eight along its longer side.
     fn floor_color(&self, at: [f32; 3], width: f32) -> [f32; 3] {
         let longest = (0..3)
             .filter(|&i| i != self.up)
@@ -157,7 +159,7 @@ impl PerspectivePainter {
         )
     }
 
-    /// The box's twelve edges, faint, hidden by what is before them.
+    /// Draws the twelve edges of the box, faint, and hidden behind nearer things.
     fn draw_edges(&self, eye: &Viewport, depth: &[f32], light: &mut [[f32; 3]]) {
         if !self.walls {
             return;
@@ -183,7 +185,7 @@ impl PerspectivePainter {
                     let part = step as f32 / steps;
                     let x = p[0] + (q[0] - p[0]) * part;
                     let y = p[1] + (q[1] - p[1]) * part;
-                    // 1/depth is linear on the picture.
+                    // 1/depth is linear in the picture.
                     let z = 1.0 / (1.0 / p[2] + (1.0 / q[2] - 1.0 / p[2]) * part);
                     let (along, across) = if upright { (y, x) } else { (x, y) };
                     if before == Some(along.round() as isize) {
@@ -215,7 +217,7 @@ impl PerspectivePainter {
 
 const EDGE: palette::Color = [0x6E, 0x93, 0xA6];
 
-/// 1, 2 or 5 times a power of ten, near `length`.
+/// Returns 1, 2 or 5 times a power of ten, near `length`.
 fn nice(length: f32) -> f32 {
     let power = 10.0_f32.powf(length.max(f32::MIN_POSITIVE).log10().floor());
     let lead = length / power;
@@ -231,7 +233,7 @@ fn nice(length: f32) -> f32 {
         }
 }
 
-/// The camera with its picture of samples.
+/// A camera and its grid of samples.
 struct Viewport {
     from: [f32; 3],
     right: [f32; 3],
@@ -239,9 +241,9 @@ struct Viewport {
     forward: [f32; 3],
     width: usize,
     height: usize,
-    /// Samples a unit of tangent.
+    /// Focal length \[samples\].
     focal: f32,
-    /// Where to look for what hides the sky, by the sample's place in a pattern: within a unit circle.
+    /// Offsets at which to look for things that hide the sky, within a unit circle, for each place of a 4 × 4 pattern.
     looks: Box<[[[f32; 2]; DIRECTIONS]; 16]>,
 }
 
@@ -267,7 +269,7 @@ impl Viewport {
         }
     }
 
-    /// Column, row (both as samples) and depth \[m\] of a point before the eye.
+    /// Returns column, row (in samples) and depth \[m\] of a point in front of the camera.
     fn project(&self, point: [f32; 3]) -> Option<[f32; 3]> {
         let r = sub(point, self.from);
         let depth = dot(r, self.forward);
@@ -280,7 +282,7 @@ impl Viewport {
         })
     }
 
-    /// Direction of a sample's ray, 1 along the view.
+    /// Returns the direction of a sample's ray, scaled to 1 along the view.
     fn ray(&self, column: f32, row: f32) -> [f32; 3] {
         let u = (column + 0.5 - 0.5 * self.width as f32) / self.focal;
         let v = (0.5 * self.height as f32 - row - 0.5) / self.focal;
@@ -304,7 +306,7 @@ impl Viewport {
                 (v - reach).ceil().max(0.0),
                 (v + reach).floor().min(self.height as f32 - 1.0),
             );
-            // Also false for what is not a number.
+            // Also false if a number is not finite.
             if !(left <= right && top <= bottom) {
                 continue;
             }
@@ -328,8 +330,8 @@ impl Viewport {
         DepthBuffer { depth, particle }
     }
 
-    /// Adds the colliders, as far as they are within the scene's box: marches along each ray by the
-    /// distance that is free around it. Solid k is seen as particle `NOTHING − 1 − k`.
+    /// Adds the colliders within the scene's box: marches along each ray in steps of the distance to the nearest solid.
+    /// Solid k appears as particle `NOTHING − 1 − k`.
     fn trace(
         &self,
         space: &PerspectivePainter,
@@ -374,8 +376,8 @@ impl Viewport {
         }
     }
 
-    /// Depth, smoothed over about two balls, along rows and columns in turn. What is much nearer does not pull, and
-    /// what is much farther pulls no more than what is a little farther: edges stay where they are.
+    /// Smooths the depth over about two balls, along rows and columns in turn. A much nearer sample has no effect, and a
+    /// much farther one only that of a little farther one, so that edges stay in place.
     fn smooth(&self, seen: &mut DepthBuffer, particles: &DrawableParticles) {
         let (w, h) = (self.width, self.height);
         let radius: Vec<f32> = seen
@@ -407,7 +409,7 @@ impl Viewport {
                     for step in 1..=side {
                         let a = seen.depth[at - step * stride] - center;
                         let b = seen.depth[at + step * stride] - center;
-                        // In pairs, so that slopes stay; infinite where there is nothing.
+                        // In pairs, so that slopes stay. An empty sample has infinite depth.
                         if a.min(b) > -jump && a.max(b) < f32::INFINITY {
                             let share = 1.0 - (step * step) as f32 * falloff;
                             total += share * (a.min(jump) + b.min(jump));
@@ -429,7 +431,7 @@ impl Viewport {
         )
     }
 
-    /// The normal of the smoothed depth, by the smaller of the differences on either side.
+    /// Returns the normal of the smoothed depth, from the smaller of the differences on either side.
     fn normal(&self, depth: &[f32], at: usize, center: [f32; 3]) -> [f32; 3] {
         let (column, row) = (at % self.width, at / self.width);
         let difference = |back: Option<usize>, front: Option<usize>| {
@@ -463,7 +465,7 @@ impl Viewport {
         }
     }
 
-    /// How much of the sky is hidden by what is near: 0 open, 1 closed.
+    /// Returns the part of the sky that near things hide: 0 open, 1 closed.
     fn hidden(
         &self,
         depth: &[f32],
@@ -474,7 +476,7 @@ impl Viewport {
     ) -> f32 {
         let (column, row) = ((at % self.width) as f32, (at / self.width) as f32);
         let samples = (reach * self.focal / depth[at]).clamp(3.0, 60.0);
-        // Turned by a fixed pattern over 4 × 4 samples, which the mean of samples mixes.
+        // The offsets turn in a fixed pattern over 4 × 4 samples, which the mean of samples hides.
         let looks = &self.looks[(at % self.width % 4) * 4 + at / self.width % 4];
         let mut sum = 0.0;
         for look in looks {
@@ -538,7 +540,7 @@ impl Viewport {
             let open = 1.0 - 0.75 * self.hidden(&seen.depth, at, center, normal, 5.0 * radius);
             let lamp = dot(normal, space.lamp);
             let lit = LAMP * lamp.max(0.0) * (1.0 - 0.75 * shadow.at(center, 2.2 * radius));
-            // From above comes more light than from below.
+            // More light comes from above than from below.
             let around = AMBIENT * (0.75 + 0.25 * normal[space.up]) * open;
             let half = unit(add_scaled(space.lamp, view, 1.0));
             let shine = if lit > 0.0 {
@@ -556,16 +558,16 @@ impl Viewport {
     }
 }
 
-/// Looks around a sample for what hides the sky.
+/// Number of offsets at which a sample looks for things that hide the sky.
 const DIRECTIONS: usize = 9;
 
-/// What the lamp sees, from far away: the height along its direction of the first thing it meets.
+/// The shadow map: for each ray of the lamp, the height of the first thing it meets, along the lamp's direction.
 struct Shadow {
     side: [f32; 3],
     other: [f32; 3],
     lamp: [f32; 3],
     corner: [f32; 2],
-    /// Samples a meter.
+    /// Samples per meter.
     scale: f32,
     height: Vec<f32>,
 }
@@ -634,7 +636,7 @@ impl Shadow {
         ]
     }
 
-    /// How much of the lamp is hidden from `x` by what is more than `slack` \[m\] nearer to it: 0 to 1.
+    /// Returns the part of the lamp (0 to 1) that is hidden from `x` by things more than `slack` \[m\] nearer to it.
     fn at(&self, x: [f32; 3], slack: f32) -> f32 {
         let [u, v, height] = self.place(x);
         let mut hidden = 0.0;

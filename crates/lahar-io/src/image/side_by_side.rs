@@ -11,16 +11,25 @@ use embedded_graphics::text::{Baseline, Text};
 use super::Picture;
 use super::palette::Color;
 
-/// Of the strip that titles stand in \[pixels\].
+/// Height of the strip with the titles \[pixels\].
 const STRIP: u32 = 28;
 
-/// Between two pictures \[pixels\].
+/// Gap between two pictures \[pixels\].
 const GAP: u32 = 4;
 
+/// Color of the strip with the titles.
 const STRIP_COLOR: Color = [0x20, 0x20, 0x20];
 
-/// One picture of several of one size, from left to right, each under its title; `None` if there are
-/// none, or their sizes differ.
+/// Joins pictures of one size, from left to right, each under its title. Returns `None` if there is no picture, or their
+/// sizes differ.
+///
+/// ```
+/// use lahar_io::image::{Picture, side_by_side};
+///
+/// let picture = Picture { width: 90, height: 10, rgb: vec![0; 3 * 90 * 10] };
+/// let both = side_by_side(&[("apic", &picture), ("pic", &picture)]).unwrap();
+/// assert!(both.width > 180 && both.height > 10);
+/// ```
 pub fn side_by_side(pictures: &[(&str, &Picture)]) -> Option<Picture> {
     let (_, first) = pictures.first()?;
     let (width, height) = (first.width, first.height);
@@ -42,9 +51,9 @@ pub fn side_by_side(pictures: &[(&str, &Picture)]) -> Option<Picture> {
         let left = index * (width + GAP);
         let font = MonoTextStyle::new(&ascii::FONT_9X18, Rgb888::WHITE);
         let corner = Point::new(left as i32 + 8, (STRIP as i32 - 18) / 2);
-        let room = Rectangle::new(Point::new(left as i32, 0), Size::new(width, STRIP));
+        let strip = Rectangle::new(Point::new(left as i32, 0), Size::new(width, STRIP));
         let Ok(_) = Text::with_baseline(title, corner, font, Baseline::Top)
-            .draw(&mut Canvas(&mut whole).clipped(&room));
+            .draw(&mut Canvas(&mut whole).clipped(&strip));
         for row in 0..height {
             let from = 3 * (row * width) as usize;
             let to = 3 * ((row + STRIP) * whole.width + left) as usize;
@@ -55,7 +64,7 @@ pub fn side_by_side(pictures: &[(&str, &Picture)]) -> Option<Picture> {
     Some(whole)
 }
 
-/// A picture as the library for text sees it.
+/// A picture as the library that draws text needs it.
 struct Canvas<'a>(&'a mut Picture);
 
 impl OriginDimensions for Canvas<'_> {

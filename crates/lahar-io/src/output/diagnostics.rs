@@ -1,4 +1,5 @@
-//! `diagnostics.csv`: a row a frame, nothing that depends on the clock.
+//! `diagnostics.csv`: totals, one row per frame. Nothing in it depends on the clock, so that a resumed run writes the
+//! same bytes.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -9,7 +10,19 @@ use crate::files::{GrowingFile, Length, OutputError};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The growing file. Every row is handed to the system at once.
+/// The growing file `diagnostics.csv`. Every row is handed to the system at once.
+///
+/// ```
+/// use lahar::Diagnostics;
+/// use lahar_io::output::{DiagnosticsFile, Table};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("diagnostics.csv");
+/// let mut file = DiagnosticsFile::create(&path, 2)?;
+/// file.push(&Diagnostics { time: 0.5, mass: 2.0, ..Diagnostics::default() })?;
+/// assert_eq!(Table::read(&path)?.column("mass"), Some(&[2.0][..]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct DiagnosticsFile {
     file: GrowingFile,
@@ -17,7 +30,7 @@ pub struct DiagnosticsFile {
 }
 
 impl DiagnosticsFile {
-    /// A new file with its header; `dimension` (2 or 3) decides how many components vectors have.
+    /// Creates the file with its header. Vectors have `dimension` (2 or 3) components.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -25,7 +38,7 @@ impl DiagnosticsFile {
         Self::open(path, dimension, None)
     }
 
-    /// A new file, or one cut back to what it was.
+    /// Creates the file, or cuts it back to an earlier length.
     pub(super) fn open(
         path: &Path,
         dimension: usize,
@@ -51,7 +64,7 @@ impl DiagnosticsFile {
     }
 }
 
-/// Components of angular momentum: z in 2D.
+/// Returns the components of angular momentum: z in 2D, all in 3D.
 fn turns(dimension: usize) -> core::ops::Range<usize> {
     if dimension == 2 { 2..3 } else { 0..3 }
 }
@@ -78,7 +91,7 @@ fn row(d: &Diagnostics, dimension: usize) -> String {
     );
     let mut add = |values: &[f64]| {
         for value in values {
-            write!(line, "{value:?},").expect("strings take everything");
+            write!(line, "{value:?},").expect("writing to a String");
         }
     };
     add(&[d.mass]);
@@ -92,7 +105,7 @@ fn row(d: &Diagnostics, dimension: usize) -> String {
         d.volume,
         d.particle_volume,
     ]);
-    writeln!(line, "{},{:?}", d.escaped, d.escaped_mass).expect("strings take everything");
+    writeln!(line, "{},{:?}", d.escaped, d.escaped_mass).expect("writing to a String");
     line
 }
 

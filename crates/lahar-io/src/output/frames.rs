@@ -1,4 +1,4 @@
-//! `frames/000000.npz` and the like: the particles of a moment.
+//! `frames/000000.npz` and the like: the particles of one frame.
 
 use std::path::Path;
 
@@ -7,12 +7,12 @@ use lahar::Snapshot;
 use crate::export::Format;
 use crate::files::{Durability, OutputError, write_whole};
 
-/// `000000.npz` for frame 0 and the ending `npz`.
+/// Returns the name of a frame's file: `000000.npz` for frame 0 and the ending `npz`.
 pub fn frame_name(index: u64, ending: &str) -> String {
     format!("{index:06}.{ending}")
 }
 
-/// Writes what fields `snapshot` has, whole or not at all.
+/// Writes the fields that `snapshot` has to a file, whole or not at all.
 ///
 /// # Errors
 /// If the file cannot be written.

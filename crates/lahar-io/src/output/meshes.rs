@@ -1,4 +1,4 @@
-//! `meshes/MATERIAL/000000.ply`: surfaces, a folder a material, and a list by time for ParaView.
+//! `meshes/MATERIAL/000000.ply`: surfaces, one folder per material, and a list by time for ParaView.
 
 use std::path::{Path, PathBuf};
 
@@ -6,20 +6,20 @@ use super::frame_name;
 use crate::export::{MeshFormat, TimeSeries, Triangles};
 use crate::files::{Durability, OutputError, file_name, make_folder, write_whole};
 
-/// The growing sequences.
+/// Sequences of meshes, one per material.
 #[derive(Debug)]
 pub struct MeshFiles {
     folder: PathBuf,
     formats: Vec<MeshFormat>,
-    /// A list by time for each material, where VTK's files are written.
+    /// For each material, the list of its VTK files by time; empty if VTK is not written.
     series: Vec<(String, TimeSeries)>,
 }
 
 impl MeshFiles {
-    /// Makes `folder` and one in it for each of `materials`. Meshes that are there already are written over.
+    /// Makes `folder`, and in it one folder for each of `materials`. Meshes that are there already are replaced.
     ///
     /// # Errors
-    /// If something cannot be made.
+    /// If a folder cannot be made.
     pub fn create(
         folder: &Path,
         materials: &[&str],
@@ -48,7 +48,7 @@ impl MeshFiles {
         self.folder.join(file_name(material))
     }
 
-    /// Writes the mesh of a material in a frame, at a time \[s\].
+    /// Writes the mesh of a material in frame `frame`, at the time `time` \[s\].
     ///
     /// # Errors
     /// If it cannot be written.

@@ -1,15 +1,18 @@
-//! What a run leaves behind, and the thread that writes it.
+//! The files of a run, and the thread that writes them.
 //!
 //! ```text
-//! DIR/run.json          what was run, and how it went            record
-//! DIR/diagnostics.csv   totals, a row a frame                     diagnostics
-//! DIR/probes/NAME.csv   what probes have read, a row a reading  probes
-//! DIR/frames/000000.npz particles                                 frames
-//! DIR/checkpoints/      what a run goes on from                  crate::checkpoint
-//! DIR/images/000000.png pictures, and DIR/video.gif               crate::image
+//! DIR/run.json            the scene and the outcome                  record
+//! DIR/diagnostics.csv     totals, one row per frame                  diagnostics
+//! DIR/probes/NAME.csv     readings of probes, one row per reading    probes
+//! DIR/frames/000000.npz   particles                                  frames
+//! DIR/checkpoints/        states from which a run is resumed         crate::checkpoint
+//! DIR/images/000000.png   pictures, and DIR/video.gif                crate::image
 //! ```
-//! Every file but the growing csv is written under a temporary name and renamed, so that a run killed at any moment
-//! leaves whole files only. A frame's row is written after its files: what the csv lists is there.
+//! [`RunFolder`] is the folder, [`Writer`] writes into it, and [`Recording`] reads it back.
+//!
+//! Every file but the growing csv is written under a temporary name and renamed, so that a run that is killed at any
+//! moment leaves whole files only. The row of a frame is written after its files, so that all files of a listed frame
+//! exist.
 
 mod diagnostics;
 mod folder;

@@ -1,4 +1,4 @@
-//! `probes/NAME.csv`: what probes have read, a row a reading.
+//! `probes/NAME.csv`: the readings of probes, one row per reading.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use lahar::ProbeSamples;
 
 use crate::files::{GrowingFile, Length, OutputError, confined, file_name, make_folder};
 
-/// The growing files, one a probe, made when the first readings come.
+/// The growing files, one per probe. They are made when the first readings come.
 #[derive(Debug)]
 pub(super) struct ProbeFiles {
     folder: PathBuf,
@@ -22,7 +22,7 @@ impl ProbeFiles {
         }
     }
 
-    /// Those of the run in `run`, cut back to what they were.
+    /// Opens the files of the run in `run`, cut back to earlier lengths.
     pub(super) fn resume(folder: &Path, run: &Path, were: &[Length]) -> Result<Self, OutputError> {
         let open = |length: &Length| {
             let path = confined(run, &length.file).map_err(|what| OutputError::usage(run, what))?;
@@ -34,7 +34,7 @@ impl ProbeFiles {
         })
     }
 
-    /// Adds readings; always of the same probes.
+    /// Adds readings; each call must bring the same probes in the same order.
     pub(super) fn push(&mut self, probes: &[ProbeSamples]) -> Result<(), OutputError> {
         if self.files.is_empty() && !probes.is_empty() {
             make_folder(&self.folder)?;
@@ -59,9 +59,9 @@ impl ProbeFiles {
 fn rows(probe: &ProbeSamples) -> String {
     let mut text = String::new();
     for sample in &probe.samples {
-        write!(text, "{:?}", sample.time).expect("strings take everything");
+        write!(text, "{:?}", sample.time).expect("writing to a String");
         for value in &sample.values {
-            write!(text, ",{value:?}").expect("strings take everything");
+            write!(text, ",{value:?}").expect("writing to a String");
         }
         text.push('\n');
     }

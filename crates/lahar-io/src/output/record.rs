@@ -1,4 +1,4 @@
-//! `run.json`: what was run, and how it went.
+//! `run.json`: the scene of a run and its outcome.
 
 use std::io::Write;
 use std::path::Path;
@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 use crate::checkpoint::PhaseSeconds;
 use crate::files::{Durability, OutputError, write_whole};
 
-/// How a run stands.
+/// State of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
-    /// Going on, or killed without a word.
+    /// Running, or killed.
     Running,
-    /// All frames are there.
+    /// All frames are written.
     Done,
     /// Stopped by Ctrl-C.
     Interrupted,
-    /// Stopped by an error, told in `failure`.
+    /// Stopped by an error, which `failure` describes.
     Failed,
 }
 
@@ -27,53 +27,53 @@ pub enum Status {
 pub struct Record {
     /// Version of the program.
     pub version: String,
-    /// How the run stands.
+    /// State of the run.
     pub status: Status,
-    /// What went wrong, if it failed.
+    /// Description of the error, if the run failed.
     pub failure: Option<String>,
-    /// Name of the scene: a built-in's, or its file's.
+    /// Name of the scene: of a built-in scene, or of its file.
     pub scene_name: String,
-    /// The scene with every default and override in it.
+    /// The scene with all defaults and overrides.
     pub scene: serde_json::Value,
-    /// Seed of everything random in it.
+    /// Seed of the scene's random numbers.
     pub seed: u64,
     /// 2 or 3.
     pub dimension: usize,
     /// "f32" or "f64".
     pub precision: String,
-    /// The instruction set in use.
+    /// Instruction set that computed.
     pub isa: String,
-    /// Threads that computed.
+    /// Number of threads that computed.
     pub threads: usize,
-    /// Frames written, the one at the start included.
+    /// Number of frames written, with the one at the start.
     pub frames: u64,
     /// Simulated time \[s\].
     pub time: f64,
-    /// Substeps taken.
+    /// Number of substeps taken.
     pub substeps: u64,
-    /// Particles at the end.
+    /// Number of particles at the end.
     pub particles: u64,
-    /// Σ over substeps of particles.
+    /// Sum over all substeps of the particle count.
     pub particle_steps: u64,
-    /// `particle_steps` over the seconds from the first substep to the end, of everything but output.
+    /// `particle_steps` per second from the first substep to the end, without output.
     pub particle_steps_per_second: f64,
-    /// Seconds from the program's start to its first substep, the output of frame 0 not counted.
+    /// Seconds from the program's start to its first substep, without the output of frame 0.
     #[serde(default)]
     pub startup_seconds: f64,
-    /// Seconds from the program's start to the end: start-up and all phases.
+    /// Seconds from the program's start to the end.
     pub seconds: f64,
     /// Seconds by phase.
     pub phase_seconds: PhaseSeconds,
-    /// How often particles were sorted.
+    /// Number of particle sorts.
     pub sorts: u64,
-    /// What looked suspicious about the scene.
+    /// Warnings about the scene.
     pub warnings: Vec<String>,
-    /// Frames that were tried again with a shorter time step.
+    /// Frames that were retried with a shorter time step, one sentence per retry.
     pub retries: Vec<String>,
 }
 
 impl Record {
-    /// Writes it, whole or not at all.
+    /// Writes the file, whole or not at all.
     ///
     /// # Errors
     /// If it cannot be written; a record that was there before stays.

@@ -1,4 +1,4 @@
-//! A run's folder, read back: what was run, and its frames.
+//! A run's folder, read back: the record and the frames.
 
 use std::fmt;
 use std::fs;
@@ -11,7 +11,7 @@ use super::Record;
 use crate::files::confined;
 use lahar_scene::npz;
 
-/// A folder that a run left, with particles in it.
+/// A recorded run: its record and its frames of particles.
 #[derive(Clone, Debug)]
 pub struct Recording {
     folder: PathBuf,
@@ -19,12 +19,12 @@ pub struct Recording {
     frames: Vec<PathBuf>,
 }
 
-/// Why a folder is not a run that can be read, or a frame not a frame.
+/// An error about a run or a frame that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RecordingError {
     /// The folder or file.
     pub path: PathBuf,
-    /// What is wrong and, where there is something to do, what.
+    /// The problem, and the way out where there is one.
     pub what: String,
 }
 
@@ -44,10 +44,10 @@ fn error(path: &Path, what: impl Into<String>) -> RecordingError {
 }
 
 impl Recording {
-    /// The run in `folder`; its `run.json` will do as well.
+    /// Opens the run in `folder`, which may also be the path of its `run.json`.
     ///
     /// # Errors
-    /// There is no run, its record cannot be read, or it left no particles.
+    /// If there is no run, its record cannot be read, or it has no frames of particles.
     pub fn open(folder: impl AsRef<Path>) -> Result<Self, RecordingError> {
         let folder = folder.as_ref();
         let folder = if folder.ends_with("run.json") {
@@ -67,7 +67,7 @@ impl Recording {
         if frames.is_empty() {
             return Err(error(
                 folder,
-                "the run left no particles; run the scene again with --format npz",
+                "the run has no frames of particles; run the scene again with --format npz",
             ));
         }
         Ok(Self {
@@ -77,23 +77,23 @@ impl Recording {
         })
     }
 
-    /// Where it is.
+    /// Returns the run's folder.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// What was run, and how it went.
+    /// Returns the run's record.
     pub fn record(&self) -> &Record {
         &self.record
     }
 
-    /// Number of frames with particles, at least 1.
-    #[expect(clippy::len_without_is_empty, reason = "it never is")]
+    /// Returns the number of frames with particles, at least 1.
+    #[expect(clippy::len_without_is_empty, reason = "a recording is never empty")]
     pub fn len(&self) -> usize {
         self.frames.len()
     }
 
-    /// The number of a frame as its file has it; `index` counts those that were written from 0.
+    /// Returns the number in a frame's file name; `index` counts the files from 0.
     ///
     /// # Panics
     /// If there is no such frame.
@@ -101,10 +101,10 @@ impl Recording {
         frame_number(&self.frames[index]).expect("only files with a number are frames")
     }
 
-    /// The particles of a frame, counted from 0 over those that were written: all fields that the file has.
+    /// Reads the particles of a frame with all fields of its file; `index` counts the files from 0.
     ///
     /// # Errors
-    /// The file cannot be read, or is not a frame of this run.
+    /// If the file cannot be read, or is not a frame of this run.
     pub fn frame(&self, index: usize) -> Result<Snapshot, RecordingError> {
         let path = (self.frames.get(index)).ok_or_else(|| {
             error(
@@ -127,7 +127,7 @@ impl Recording {
         let mut columns: Vec<(Field, Data)> = vec![];
         for array in arrays {
             let Some(info) = FIELDS.iter().find(|info| info.name == array.name) else {
-                continue; // someone else's, or of a later version
+                continue; // of another program, or of a later version
             };
             let shape: &[usize] = match info.shape {
                 Shape::Scalar => &[n],
@@ -154,10 +154,10 @@ impl Recording {
     }
 }
 
-/// What was run in `folder`, and how it went, with the path of the file that says so.
+/// Reads the record of the run in `folder`. Returns the path of `run.json` and the record.
 ///
 /// # Errors
-/// There is no run, or its record cannot be read.
+/// If there is no run, or its record cannot be read.
 pub fn read_record(folder: &Path) -> Result<(PathBuf, Record), RecordingError> {
     let path = folder.join("run.json");
     let text = fs::read_to_string(&path).map_err(|why| match why.kind() {
@@ -172,14 +172,14 @@ pub fn read_record(folder: &Path) -> Result<(PathBuf, Record), RecordingError> {
     Ok((path, record))
 }
 
-/// 12 of `000012.npz`.
+/// Returns the number in a file's name: 12 for `000012.npz`.
 fn frame_number(path: &Path) -> Option<u64> {
     let npz = path.extension().is_some_and(|ending| ending == "npz");
     let stem = path.file_stem()?.to_str()?;
     npz.then(|| stem.parse().ok()).flatten()
 }
 
-/// `000000.npz`, ..., in order of their numbers.
+/// Returns the paths `000000.npz` and so on, in the order of their numbers. Links are left out.
 fn frame_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<(u64, PathBuf)> = entries

@@ -1,32 +1,31 @@
-//! A csv file of a run (`diagnostics.csv`, `probes/NAME.csv`), read back.
+//! A csv file of a run (`diagnostics.csv` or `probes/NAME.csv`), read back.
 
 use std::fs;
 use std::path::Path;
 
 use crate::files::OutputError;
 
-/// Named columns of numbers.
+/// A table of named columns of numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
     names: Vec<String>,
-    /// A column a name, all of one length.
+    /// One column per name, all of one length.
     columns: Vec<Vec<f64>>,
 }
 
 impl Table {
-    /// Reads the file at `path`: a line of names, then lines of as many values. A value that is no
-    /// number (what limited dt) is read as not a number. A last line without its end, which a killed run can
-    /// leave, is left out.
+    /// Reads the file `path`: a line of names, then lines with one value per name. A value that is not a number (such as
+    /// the word in `dt_limit`) is read as NaN. A last line without line end, as a killed run may leave, is left out.
     ///
     /// # Errors
-    /// If there is no such file, or a line has another number of values than there are names.
+    /// If the file cannot be read, or a line does not have one value per name.
     pub fn read(path: &Path) -> Result<Self, OutputError> {
         let text = fs::read_to_string(path)
             .map_err(|error| OutputError::usage(path, format!("cannot read: {error}")))?;
         Self::parse(&text).map_err(|what| OutputError::usage(path, what))
     }
 
-    /// The words of one column of such a file.
+    /// Reads the words of one column of the file `path`.
     ///
     /// # Errors
     /// As [`Self::read`], or if there is no such column.
@@ -46,7 +45,7 @@ impl Table {
         let mut lines = whole.lines();
         let names: Vec<String> = match lines.next() {
             Some(line) if !line.is_empty() => line.split(',').map(str::to_owned).collect(),
-            _ => return Err("there is no line of names".to_owned()),
+            _ => return Err("the line of names is missing".to_owned()),
         };
         let mut columns = vec![Vec::new(); names.len()];
         for (number, line) in lines.enumerate() {
@@ -66,13 +65,13 @@ impl Table {
         Ok(Self { names, columns })
     }
 
-    /// The column of that name.
+    /// Returns the column with this name.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let index = self.names.iter().position(|n| n == name)?;
         Some(&self.columns[index])
     }
 
-    /// All names, in the file's order.
+    /// Returns all names, in the order of the file.
     pub fn names(&self) -> &[String] {
         &self.names
     }

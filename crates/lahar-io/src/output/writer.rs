@@ -1,4 +1,4 @@
-//! The thread that writes, so that the solver need not wait: a few frames may be under way, then it does.
+//! The thread that writes a run's files, so that the simulation need not wait for the disk.
 
 use std::fs::{self, File};
 use std::path::Path;
@@ -14,56 +14,63 @@ use crate::export::{Format, TimeSeries};
 use crate::files::{Durability, GrowingFile, OutputError, make_folder, sync_folder, write_whole};
 use crate::image::{self, Renderer};
 
-/// Frames that may be under way: one being written, one ready.
+/// Most frames between simulation and disk: one that is being written, one that waits.
 const UNDER_WAY: usize = 2;
 
-/// What to write of a run.
+/// The outputs of a run.
 pub struct OutputPlan {
-    /// Where.
+    /// Folder of the run.
     pub folder: RunFolder,
     /// 2 or 3.
     pub dimension: usize,
-    /// Particles of every frame, a file for each of these.
+    /// Formats of particles; each frame gets one file per format.
     pub formats: Vec<Format>,
-    /// PicturePlan of every frame as PNG, if wanted.
+    /// Pictures as PNG, if wanted.
     pub pictures: Option<PicturePlan>,
-    /// The film, if wanted.
+    /// Film as GIF, if wanted.
     pub film: Option<FilmPlan>,
 }
 
-/// PicturePlan kept as PNG.
+/// Pictures that are kept as PNG files.
 pub struct PicturePlan {
-    /// Draws them.
+    /// Renderer that draws them.
     pub renderer: Renderer,
-    /// Every so many frames.
+    /// Number of frames from one picture to the next.
     pub every: u64,
 }
 
-/// A film.
+/// A film of a run.
 pub struct FilmPlan {
-    /// Draws it.
+    /// Renderer that draws its pictures.
     pub renderer: Renderer,
-    /// Which frames, and how fast.
+    /// Its frames and its speed.
     pub pace: FilmPace,
 }
 
-/// Which frames a film shows, and how fast.
+/// The frames that a film shows, and its speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FilmPace {
-    /// Every so many frames.
+    /// Number of frames from one picture to the next.
     pub every: u64,
-    /// PicturePlan a second.
+    /// Pictures per second.
     pub rate: f64,
 }
 
-/// Most pictures a second of a film.
+/// Most pictures per second of a film.
 const FILM_RATE: f64 = 30.0;
 
-/// Films of less than this \[s\] are slowed down.
+/// Length below which a film is slowed down \[s\].
 const SHORT_FILM: f64 = 2.0;
 
-/// A film of `frames` frames at `frame_rate` a simulated second: in real time, skipping frames over 30 a second; runs
-/// that would flash by are slowed down to two seconds or more.
+/// Returns the pace of a film of `frames` frames, with `frame_rate` frames per simulated second. It plays in real time
+/// and skips frames above 30 per second. Films under two seconds are slowed down.
+///
+/// ```
+/// use lahar_io::output::film_pace;
+///
+/// let pace = film_pace(60.0, 600);
+/// assert_eq!((pace.every, pace.rate), (2, 30.0));
+/// ```
 pub fn film_pace(frame_rate: f64, frames: u64) -> FilmPace {
     let every = (frame_rate / FILM_RATE).ceil().max(1.0);
     let real_time = FilmPace {
@@ -83,7 +90,7 @@ pub fn film_pace(frame_rate: f64, frames: u64) -> FilmPace {
 enum Job {
     Frame(Box<Frame>),
     Checkpoint(Box<(Header, Checkpoint)>),
-    /// To be answered when everything before it is written.
+    /// A message to answer when everything before it is written.
     Barrier(Sender<()>),
 }
 
@@ -94,18 +101,18 @@ struct Frame {
     probes: Vec<ProbeSamples>,
 }
 
-/// Takes frames and writes them, in order, in the background.
+/// Writes frames and checkpoints, in order, on a thread of its own.
 pub struct Writer {
     jobs: Option<SyncSender<Job>>,
     thread: Option<JoinHandle<Result<OutputCounts, OutputError>>>,
 }
 
 impl Writer {
-    /// Makes the folders and files and starts the thread. A run that goes on from a checkpoint gives what that
-    /// says of its files, which are cut back to it.
+    /// Makes the folders and files and starts the thread. A run that is resumed passes the state of its files at the
+    /// checkpoint, to which they are cut back.
     ///
     /// # Errors
-    /// If something cannot be made.
+    /// If a folder or file cannot be made.
     pub fn start(plan: OutputPlan, from: Option<&OutputState>) -> Result<Self, OutputError> {
         let folder = &plan.folder;
         for (wanted, path) in [
@@ -127,7 +134,7 @@ impl Writer {
                     match job {
                         Job::Frame(frame) => work.frame(&frame)?,
                         Job::Checkpoint(checkpoint) => work.checkpoint(*checkpoint)?,
-                        // Who asked may have gone.
+                        // The thread that asked may have ended.
                         Job::Barrier(done) => drop(done.send(())),
                     }
                 }
@@ -140,11 +147,11 @@ impl Writer {
         })
     }
 
-    /// Hands over a frame; waits if too many are under way. Without a snapshot it is rows of csv files only; `probes`
-    /// are the readings since the frame before.
+    /// Hands a frame to the thread, and waits while too many are there. A frame without a snapshot writes rows of csv files
+    /// only; `probes` are the readings since the frame before.
     ///
     /// # Errors
-    /// What went wrong with an earlier frame.
+    /// If an earlier frame could not be written.
     pub fn frame(
         &mut self,
         index: u64,
@@ -160,11 +167,11 @@ impl Writer {
         })))
     }
 
-    /// Hands over a checkpoint. It is written when all before it is on the disk; what it says of the run's files is
-    /// filled in then.
+    /// Hands a checkpoint to the thread. It is written after everything before it is on the disk, and gets the state of the
+    /// run's files at that moment.
     ///
     /// # Errors
-    /// What went wrong before.
+    /// If an earlier frame could not be written.
     pub fn checkpoint(
         &mut self,
         header: Header,
@@ -173,16 +180,16 @@ impl Writer {
         self.hand_over(Job::Checkpoint(Box::new((header, checkpoint))))
     }
 
-    /// Waits until all frames handed over are written.
+    /// Waits until all frames so far are written.
     ///
     /// # Errors
-    /// What went wrong with one of them.
+    /// If one of them could not be written.
     pub fn flush(&mut self) -> Result<(), OutputError> {
         let (done, answer) = channel();
         self.hand_over(Job::Barrier(done))?;
         match answer.recv() {
             Ok(()) => Ok(()),
-            // The thread went without an answer.
+            // The thread has ended with an error.
             Err(_) => self.end().map(|_| ()),
         }
     }
@@ -195,14 +202,14 @@ impl Writer {
         {
             return Ok(());
         }
-        // The thread is gone, so it has an error to tell.
+        // The thread has ended, so it has an error.
         self.end().map(|_| ())
     }
 
-    /// Writes what is under way, and the film.
+    /// Writes the remaining frames and the film.
     ///
     /// # Errors
-    /// What went wrong.
+    /// If a file could not be written.
     pub fn finish(mut self) -> Result<OutputCounts, OutputError> {
         self.end()
     }
@@ -219,7 +226,7 @@ impl Writer {
 
 impl Drop for Writer {
     fn drop(&mut self) {
-        // Left without `finish`, another error is being told; what is under way is still written whole.
+        // Without `finish` another error is on its way to the user; the remaining frames are still written.
         self.jobs = None;
         if let Some(thread) = self.thread.take() {
             drop(thread.join());
@@ -234,9 +241,9 @@ struct OutputFiles {
     series: Option<TimeSeries>,
     film: Option<(image::Film, GrowingFile)>,
     written: OutputCounts,
-    /// Files of frames, from the run's folder, and their lengths.
+    /// Files that do not grow: paths relative to the run's folder, and lengths \[bytes\].
     files: Vec<(String, u64)>,
-    /// How many of them are known to be on the disk.
+    /// Number of these files that are known to be on the disk.
     settled: usize,
 }
 
@@ -290,7 +297,7 @@ impl OutputFiles {
         store.add(&header, &checkpoint).map(|_| ())
     }
 
-    /// How the files stand, all of them on the disk.
+    /// Waits until all files are on the disk and returns their state.
     fn settle(&mut self) -> Result<OutputState, OutputError> {
         let folder = &self.plan.folder;
         let run = folder.path();
@@ -333,7 +340,7 @@ impl OutputFiles {
         })
     }
 
-    /// Notes a file of a frame.
+    /// Adds a file to the list of those that do not grow.
     fn wrote(&mut self, path: &Path) -> Result<(), OutputError> {
         let bytes = fs::metadata(path).map_err(OutputError::at(path))?.len();
         let file = path.strip_prefix(self.plan.folder.path()).unwrap_or(path);

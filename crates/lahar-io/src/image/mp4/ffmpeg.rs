@@ -1,4 +1,4 @@
-//! MP4 by an ffmpeg that is installed: pictures go to its standard input one by one.
+//! MP4 made by an installed ffmpeg: pictures go to its standard input one by one.
 
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -6,14 +6,14 @@ use std::process::{Child, Command, Stdio};
 
 use super::super::Picture;
 
-/// The program that makes MP4.
+/// Name of the program.
 const FFMPEG: &str = "ffmpeg";
 
 /// A running ffmpeg.
 pub(super) struct Ffmpeg(Child);
 
 impl Ffmpeg {
-    /// Whether there is an ffmpeg on the path, and the first line that it says of itself.
+    /// Returns the first line of the version of an installed ffmpeg.
     pub(super) fn version() -> Option<String> {
         let output = Command::new(FFMPEG)
             .arg("-version")
@@ -31,7 +31,7 @@ impl Ffmpeg {
             .args(["-f", "rawvideo", "-pixel_format", "rgb24"])
             .args(["-video_size", &format!("{}x{}", first.width, first.height)])
             .args(["-framerate", &format!("{rate:?}"), "-i", "-"])
-            // Players want both sides even and colors in half the resolution.
+            // Players need even sides, and colors in half the resolution.
             .args([
                 "-vf",
                 "pad=ceil(iw/2)*2:ceil(ih/2)*2",
@@ -47,8 +47,10 @@ impl Ffmpeg {
         Ok(Self(child))
     }
 
+    /// Adds a picture.
+    ///
     /// # Errors
-    /// If ffmpeg has ended; then [`Self::finish`] says why.
+    /// If ffmpeg has ended; then [`Self::finish`] returns the reason.
     pub(super) fn push(&mut self, picture: &Picture) -> io::Result<()> {
         match &mut self.0.stdin {
             Some(pipe) => pipe.write_all(&picture.rgb),
@@ -56,8 +58,10 @@ impl Ffmpeg {
         }
     }
 
+    /// Ends the film.
+    ///
     /// # Errors
-    /// What ffmpeg says.
+    /// If ffmpeg fails, with its message.
     pub(super) fn finish(mut self) -> io::Result<()> {
         drop(self.0.stdin.take());
         let mut said = String::new();
@@ -72,9 +76,9 @@ impl Ffmpeg {
 }
 
 impl Drop for Ffmpeg {
-    /// A film that nobody finishes is not written on.
+    /// Stops ffmpeg if the film is not finished.
     fn drop(&mut self) {
-        // Both fail where it has ended, which is as well.
+        // Both fail if it has ended already, which does no harm.
         drop(self.0.kill());
         drop(self.0.wait());
     }

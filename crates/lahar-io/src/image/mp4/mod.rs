@@ -1,5 +1,4 @@
-//! A film as MP4 (H.264): by an ffmpeg that is installed, or by an encoder that this program was built with (feature
-//! `mp4`).
+//! Films as MP4 (H.264), made by an installed ffmpeg, or by an encoder inside this program (feature `mp4`).
 
 mod ffmpeg;
 #[cfg(feature = "mp4")]
@@ -13,12 +12,12 @@ use super::Picture;
 use crate::files::remove_file_io;
 use ffmpeg::Ffmpeg;
 
-/// What makes MP4.
+/// A program or library that makes MP4.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Mp4Maker {
-    /// An ffmpeg on the path, by the first line that it says of itself.
+    /// An installed ffmpeg, with the first line of its version.
     Ffmpeg(String),
-    /// The encoder in this program: no larger than 3840 × 2160 pixels.
+    /// The encoder in this program, for pictures up to 3840 × 2160 pixels.
     #[cfg(feature = "mp4")]
     OpenH264,
 }
@@ -34,7 +33,7 @@ impl fmt::Display for Mp4Maker {
 }
 
 impl Mp4Maker {
-    /// What there is on this machine, ffmpeg first: its files are smaller. `None`: nothing.
+    /// Returns a maker that exists on this machine: ffmpeg if possible, since its files are smaller.
     pub fn find() -> Option<Self> {
         let installed = Ffmpeg::version().map(Self::Ffmpeg);
         #[cfg(feature = "mp4")]
@@ -42,12 +41,13 @@ impl Mp4Maker {
         installed
     }
 
-    /// Begins the film at `path`, of `rate` pictures a second, all of the size of `first`, which is not yet in it.
+    /// Begins a film at `path` of `rate` pictures per second, all of the size of `first`. The film does not contain `first`
+    /// until it is pushed. A file that was there is removed.
     ///
     /// # Errors
     /// If the file cannot be written, or ffmpeg does not start.
     pub fn start(&self, path: &Path, rate: f64, first: &Picture) -> io::Result<Mp4> {
-        // Encoders write through links, so the file that was there makes room for a new one.
+        // Encoders would write through a link, so the old file is removed first.
         remove_file_io(path)?;
         let encoder = match self {
             Self::Ffmpeg(_) => Encoder::Ffmpeg(Ffmpeg::start(path, rate, first)?),
@@ -63,7 +63,7 @@ impl Mp4Maker {
     }
 }
 
-/// A film that is being made.
+/// An MP4 film that is being made.
 pub struct Mp4 {
     encoder: Encoder,
     size: (u32, u32),
@@ -79,7 +79,7 @@ impl Mp4 {
     /// Adds a picture.
     ///
     /// # Errors
-    /// If its size is another, or the encoder has failed; then [`Self::finish`] says why.
+    /// If its size differs, or the encoder has failed; then [`Self::finish`] returns the reason.
     pub fn push(&mut self, picture: &Picture) -> io::Result<()> {
         if (picture.width, picture.height) != self.size {
             return Err(io::Error::new(
@@ -97,7 +97,7 @@ impl Mp4 {
     /// Ends the film and waits until it is written.
     ///
     /// # Errors
-    /// What the encoder says.
+    /// If the encoder fails, with its message.
     pub fn finish(self) -> io::Result<()> {
         match self.encoder {
             Encoder::Ffmpeg(ffmpeg) => ffmpeg.finish(),

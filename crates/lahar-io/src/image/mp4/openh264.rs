@@ -1,4 +1,4 @@
-//! MP4 by OpenH264, which is compiled into this program, and muxide, which puts what it makes into a file.
+//! MP4 made by OpenH264, which is compiled into this program, and written to a file by muxide.
 
 use std::fs::File;
 use std::io::{self, BufWriter};
@@ -13,23 +13,23 @@ use openh264::formats::{RgbSliceU8, YUVBuffer};
 
 use super::super::Picture;
 
-/// Pictures from one that stands alone to the next, at most: what a player goes back by when it seeks.
+/// Most pictures from one key picture to the next. Players can seek to key pictures only.
 const BETWEEN_KEYS: u32 = 60;
 
-/// A film under way.
+/// A film that is being made.
 pub(super) struct OpenH264 {
     encoder: Encoder,
     muxer: Muxer<BufWriter<File>>,
     rate: f64,
-    /// Pictures in it.
+    /// Number of pictures so far.
     pictures: u64,
-    /// Why it has ended before its time.
+    /// The error that ended the film early.
     failed: Option<io::Error>,
 }
 
 impl OpenH264 {
     pub(super) fn start(path: &Path, rate: f64, first: &Picture) -> io::Result<Self> {
-        // One fineness throughout, as many bytes as that takes.
+        // The same quality throughout, whatever number of bytes that takes.
         let config = EncoderConfig::new()
             .max_frame_rate(FrameRate::from_hz(rate as f32))
             .rate_control_mode(RateControlMode::Off)
@@ -53,8 +53,10 @@ impl OpenH264 {
         })
     }
 
+    /// Adds a picture.
+    ///
     /// # Errors
-    /// If the encoder fails; then [`Self::finish`] says why.
+    /// If the encoder fails; then [`Self::finish`] returns the reason.
     pub(super) fn push(&mut self, picture: &Picture) -> io::Result<()> {
         self.encode(picture).map_err(|error| {
             let kind = error.kind();
@@ -73,8 +75,10 @@ impl OpenH264 {
         (self.muxer.write_video(time, &stream.to_vec(), is_key)).map_err(io::Error::other)
     }
 
+    /// Ends the film.
+    ///
     /// # Errors
-    /// Why the encoder failed, or that the file cannot be written.
+    /// If the encoder has failed, or the file cannot be written.
     pub(super) fn finish(self) -> io::Result<()> {
         match self.failed {
             Some(error) => Err(error),
@@ -83,7 +87,7 @@ impl OpenH264 {
     }
 }
 
-/// The picture with both sides even, its last column and row twice where they were not: H.264 halves colors.
+/// Returns the pixels with both sides even, as H.264 needs; an odd side gets its last row or column twice.
 fn even(picture: &Picture) -> (Vec<u8>, (usize, usize)) {
     let (width, height) = (picture.width as usize, picture.height as usize);
     let row_at = |row: usize| &picture.rgb[3 * width * row.min(height - 1)..][..3 * width];
@@ -103,7 +107,7 @@ mod tests {
     use openh264::decoder::Decoder;
     use openh264::formats::YUVSource;
 
-    /// A bright square that goes to the right.
+    /// A bright square that moves to the right with the number of the picture.
     fn picture(number: usize, width: u32, height: u32) -> Picture {
         let mut rgb = [0x11, 0x2f, 0x41].repeat(width as usize * height as usize);
         for row in 8..24 {
@@ -131,7 +135,7 @@ mod tests {
         assert_eq!(&bytes[4..8], b"ftyp");
         let boxes = boxes(&bytes);
         let names: Vec<&[u8]> = boxes.iter().map(|(name, _)| *name).collect();
-        // What players need to know comes first: a browser need not have all of it to begin.
+        // The index comes first, so that a browser can begin before it has the whole file.
         assert_eq!(names, [b"ftyp", b"moov", b"mdat"]);
 
         let mut seen = 0;
@@ -165,7 +169,7 @@ mod tests {
         assert!(film.finish().unwrap_err().to_string().contains("3840"));
     }
 
-    /// The boxes of a file: name and what is in it.
+    /// Returns the boxes of a file: name and contents.
     fn boxes(mut bytes: &[u8]) -> Vec<(&[u8], &[u8])> {
         let mut boxes = vec![];
         while let Some((size, _)) = bytes.split_first_chunk() {
@@ -176,7 +180,7 @@ mod tests {
         boxes
     }
 
-    /// H.264's units, each after its length.
+    /// Returns the units of an H.264 stream, each of which follows its length.
     fn units(mut bytes: &[u8]) -> Vec<&[u8]> {
         let mut units = vec![];
         while let Some((size, rest)) = bytes.split_first_chunk() {
