@@ -3,28 +3,15 @@
 
 use crate::fixtures::{CONTACTS, ball, brawl, colliders_of_all_kinds, one_of_each};
 
-use crate::walled::{SEPARATE, SLIP, both, field};
-use lahar::material::{Corotated, Fluid, lame};
+use crate::walled::{SEPARATE, SLIP, both, field, fluid, jelly};
 use lahar::particles::Field;
 use lahar::{
-    Collider, Contact, Deformation, Domain, Instance, Material, Model, Motion, ParticleBatch,
-    Setup, Simulate, Simulation, Solid, TimeStep, Transfer, WallStyle,
+    Collider, Contact, Deformation, Domain, Instance, Motion, ParticleBatch, Setup, Simulate,
+    Simulation, Solid, TimeStep, Transfer, WallStyle,
 };
 use lahar_lab::method::random::Random;
 
-const DENSITY: f64 = 1000.0; // kg/m³
 const G: f64 = 9.81; // m/s²
-
-fn fluid(sound_speed: f64) -> Material {
-    Material {
-        name: "fluid".into(),
-        density: DENSITY,
-        model: Model::Fluid(Fluid {
-            tension: 0.0,
-            ..Fluid::inviscid(DENSITY * sound_speed * sound_speed)
-        }),
-    }
-}
 
 /// A tank 1 m wide whose floor is a half-space through (0.5, height) with the slope `angle` \[rad\], filled to 0.5 m above
 /// that point and at rest under its pressure.
@@ -40,7 +27,7 @@ fn tank(dx: f64, height: f64, angle: f64, floor: Contact) -> (Setup<2>, Particle
             sides: [both(SEPARATE); 2],
             style: WallStyle::Plane,
         }),
-        ..Setup::new(dx, vec![fluid(sound_speed)])
+        ..Setup::new(dx, vec![fluid(sound_speed, 0.0)])
     };
     setup.colliders = vec![Collider::still(
         "floor",
@@ -248,18 +235,10 @@ where
     f64: Instance<D>,
 {
     let dx = 0.05;
-    let (lambda, mu) = lame(1e4, 0.3);
     let mut setup = Setup {
         transfer,
         time_step: TimeStep::Fixed(1e-3),
-        ..Setup::new(
-            dx,
-            vec![Material {
-                name: "jelly".into(),
-                density: DENSITY,
-                model: Model::Corotated(Corotated { lambda, mu }),
-            }],
-        )
+        ..Setup::new(dx, vec![jelly(1e4)])
     };
     let point = [0.013; D];
     setup.colliders = vec![Collider::still(
@@ -316,7 +295,6 @@ fn a_body_that_leaves_a_separate_collider_keeps_its_velocity() {
 /// Returns how far a block has slid down a slope half a second and one second after its release \[m\].
 fn slide(angle: f64, friction: f64) -> [f64; 2] {
     let dx = 0.1;
-    let (lambda, mu) = lame(5e6, 0.3);
     let setup = Setup {
         gravity: [0.0, -G],
         colliders: vec![Collider::still(
@@ -327,14 +305,7 @@ fn slide(angle: f64, friction: f64) -> [f64; 2] {
             }],
             Contact::Separate { friction },
         )],
-        ..Setup::new(
-            dx,
-            vec![Material {
-                name: "block".into(),
-                density: DENSITY,
-                model: Model::Corotated(Corotated { lambda, mu }),
-            }],
-        )
+        ..Setup::new(dx, vec![jelly(5e6)])
     };
     let down = [angle.cos(), -angle.sin()];
     let step = dx / 2.0;
@@ -438,7 +409,7 @@ where
             sides: [both(SEPARATE); D],
             style: WallStyle::Plane,
         }),
-        ..Setup::new(dx, vec![fluid(sound_speed)])
+        ..Setup::new(dx, vec![fluid(sound_speed, 0.0)])
     };
     setup.colliders = vec![Collider {
         motion,

@@ -11,6 +11,15 @@ use lahar::{
 };
 use lahar_lab::method::random::Random;
 
+/// Returns dust, which has no stress.
+pub(crate) fn dust() -> Material {
+    Material {
+        name: "dust".into(),
+        density: 1.0,
+        model: Model::Dust(Dust),
+    }
+}
+
 /// One material of each model, so soft that waves and particles have similar speeds.
 pub(crate) fn one_of_each() -> Vec<Material> {
     let (lambda, mu) = lame(2e3, 0.3);

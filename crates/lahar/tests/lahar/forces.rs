@@ -1,10 +1,9 @@
 //! Forces besides gravity and stress: against formulas, against the oracle, and by their bits.
 
-use crate::fixtures::{self, brawl};
-use lahar::material::Dust;
+use crate::fixtures::{self, brawl, dust};
 use lahar::{
-    AccelerationField, Force, Instance, Material, Model, ParticleBatch, Pull, Setup, Simulate,
-    Simulation, TimeStep, Transfer,
+    AccelerationField, Force, Instance, ParticleBatch, Pull, Setup, Simulate, Simulation, TimeStep,
+    Transfer,
 };
 use lahar_lab::method::engine::{Build, Engine, Fast, Oracle, ParticleState};
 use std::sync::Arc;
@@ -60,16 +59,11 @@ fn grain<const D: usize>(
     position: [f64; D],
     velocity: [f64; D],
 ) -> (Setup<D>, ParticleBatch<D>) {
-    let dust = Material {
-        name: "dust".into(),
-        density: 1.0,
-        model: Model::Dust(Dust),
-    };
     let setup = Setup {
         time_step: TimeStep::Fixed(DT),
         transfer,
         forces,
-        ..Setup::new(0.1, vec![dust])
+        ..Setup::new(0.1, vec![dust()])
     };
     let batch = ParticleBatch {
         position: vec![position],

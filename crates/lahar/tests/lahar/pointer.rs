@@ -1,23 +1,17 @@
 //! The pointer's actions: against formulas, and the engine against the oracle.
 
-use crate::fixtures::brawl;
-use lahar::material::Dust;
+use crate::fixtures::{self, brawl};
 use lahar::reference::Reference;
 use lahar::{
-    Command, Contact, Corners, Cushion, Domain, Field, Instance, Material, Model, ParticleBatch,
-    Pointer, PointerAction, Setup, Sides, Simulate, Simulation, TimeStep, Transfer, WallStyle,
+    Command, Contact, Corners, Cushion, Domain, Field, Instance, ParticleBatch, Pointer,
+    PointerAction, Setup, Sides, Simulate, Simulation, TimeStep, Transfer, WallStyle,
 };
 
 fn dust<const D: usize>(dx: f64, dt: f64) -> Setup<D> {
-    let dust = Material {
-        name: "dust".into(),
-        density: 1.0,
-        model: Model::Dust(Dust),
-    };
     Setup {
         time_step: TimeStep::Fixed(dt),
         gravity: [0.0; D],
-        ..Setup::new(dx, vec![dust])
+        ..Setup::new(dx, vec![fixtures::dust()])
     }
 }
 

@@ -1,8 +1,8 @@
 //! A frame that fails is retried from its start with half the time step: the report, the retries, and the state that is
 //! left.
 
-use crate::fixtures::{ALL, bits, brawl};
-use lahar::material::{Corotated, Dust, Fluid, lame};
+use crate::fixtures::{ALL, bits, brawl, dust};
+use lahar::material::{Corotated, Fluid, lame};
 use lahar::{
     AccelerationField, Command, DtLimit, Failure, Force, Instance, Material, Model, ParticleBatch,
     Pointer, PointerAction, Retry, Setup, Simulate, Simulation, TimeStep, frame,
@@ -216,12 +216,7 @@ fn a_hopeless_frame_leaves_the_state_of_its_start_3d() {
 }
 
 fn thrown<T: Instance<2>>(from: f64, speed: f64) -> Result<(), Failure> {
-    let dust = Material {
-        name: "dust".into(),
-        density: 1.0,
-        model: Model::Dust(Dust),
-    };
-    let mut setup = Setup::<2>::new(0.1, vec![dust]);
+    let mut setup = Setup::<2>::new(0.1, vec![dust()]);
     setup.time_step = TimeStep::Fixed(1e-3);
     let batch = ParticleBatch {
         position: vec![[from, 0.0]],

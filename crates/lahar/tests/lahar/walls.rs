@@ -1,28 +1,13 @@
 //! Walls on their planes: waves are reflected where the walls are drawn, a body at rest stays at rest, and a body leaves a
 //! `separate` wall as if there were none.
 
-use crate::walled::{SEPARATE, SLIP, both, field};
-use lahar::material::{Corotated, Fluid, lame};
+use crate::walled::{DENSITY, SEPARATE, SLIP, both, field, fluid, jelly};
 use lahar::particles::Field;
 use lahar::{
-    Contact, Deformation, Domain, Instance, Material, Model, ParticleBatch, Setup, Sides, Simulate,
-    Simulation, TimeStep, Transfer, WallStyle,
+    Contact, Deformation, Domain, Instance, ParticleBatch, Setup, Sides, Simulate, Simulation,
+    TimeStep, Transfer, WallStyle,
 };
 use std::f64::consts::PI;
-
-const DENSITY: f64 = 1000.0; // kg/m³
-
-/// Returns a fluid with p = ρ₀c² (1/J − 1).
-fn fluid(sound_speed: f64, tension: f64) -> Material {
-    Material {
-        name: "fluid".into(),
-        density: DENSITY,
-        model: Model::Fluid(Fluid {
-            tension,
-            ..Fluid::inviscid(DENSITY * sound_speed * sound_speed)
-        }),
-    }
-}
 
 /// Returns two particles per cell and axis on a lattice that fills `min .. max` (a whole number of half cells).
 fn lattice<const D: usize>(min: [f64; D], max: [f64; D], dx: f64) -> ParticleBatch<D> {
@@ -141,12 +126,6 @@ fn the_error_of_walls_is_of_second_order() {
 /// against the walls.
 fn leave<T: Instance<D>, const D: usize>(transfer: Transfer, towards: f64, friction: f64) -> f64 {
     let dx = 0.05;
-    let (lambda, mu) = lame(1e4, 0.3);
-    let material = Material {
-        name: "jelly".into(),
-        density: DENSITY,
-        model: Model::Corotated(Corotated { lambda, mu }),
-    };
     let setup = Setup {
         transfer,
         time_step: TimeStep::Fixed(1e-3),
@@ -156,7 +135,7 @@ fn leave<T: Instance<D>, const D: usize>(transfer: Transfer, towards: f64, frict
             sides: [both(Contact::Separate { friction }); D],
             style: WallStyle::Plane,
         }),
-        ..Setup::new(dx, vec![material])
+        ..Setup::new(dx, vec![jelly(1e4)])
     };
     let (min, max) = if towards > 0.0 {
         (0.0, 0.3)
@@ -267,12 +246,6 @@ fn a_tank_at_rest_stays_at_rest() {
 #[test]
 fn friction_follows_coulomb_s_law() {
     let (dx, g, friction, speed) = (0.025, 10.0, 0.3, 2.0);
-    let (lambda, mu) = lame(1e6, 0.3);
-    let material = Material {
-        name: "block".into(),
-        density: DENSITY,
-        model: Model::Corotated(Corotated { lambda, mu }),
-    };
     let setup = Setup {
         gravity: [0.0, -g],
         domain: Some(Domain {
@@ -281,7 +254,7 @@ fn friction_follows_coulomb_s_law() {
             sides: [both(Contact::Separate { friction }); 2],
             style: WallStyle::Plane,
         }),
-        ..Setup::new(dx, vec![material])
+        ..Setup::new(dx, vec![jelly(1e6)])
     };
     let mut batch = lattice([0.5, 0.0], [1.0, 0.1], dx);
     batch.velocity = vec![[speed, 0.0]];
