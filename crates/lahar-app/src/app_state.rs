@@ -489,7 +489,7 @@ impl AppState {
         self.pointer_tool = PointerTool::of(
             info.controls,
             self.scene_gravity(),
-            self.scenery.smallest(info.dimension),
+            self.scenery.smallest_side(info.dimension),
             info.dx,
         );
         if self.speed != info.controls.speed {

@@ -1,18 +1,19 @@
-//! The window of lahar: particles drawn as they move, keys, mouse and a panel to stir them.
+//! The window of lahar: it draws particles as they move, and keys, mouse and a panel stir them.
 //!
 //! ```text
-//!            keys, mouse ─▶ view, panel ─▶ AppState ─▶ Order ─▶ Solver (its thread) ─▶ Simulation
-//!   window ◀─ renderer ◀─ Picture ◀─────── AppState ◀─ Shown ◀─┘
+//!            keys, mouse ─▶ view, panel ─▶ AppState ─▶ Order ──────▶ Solver (its thread) ─▶ Driver ─▶ Simulate
+//!   window ◀─ renderer ◀─ Picture ◀─────── AppState ◀─ SolverState ◀─┘
 //! ```
 //!
-//! A scene runs alone or, to compare settings, several times side by side; a finished run is replayed.
+//! A scene runs alone or, to compare settings, several times side by side. The folder of a finished run is replayed.
 //!
-//! The same renderer draws a run's frames into pictures, without a window: [`Painter`].
-//!
-//! [`run`] opens it. [`app_state`] holds what the window knows and decides, and needs no window;
-//! [`solver`] runs the simulation; [`renderer`] draws. Where there is no display or nothing to draw
-//! with, [`run`] says so in its error, before anything is opened, and a caller may go on without.
+//! - [`run`] opens the window. Without a display or a graphics adapter it fails before anything opens, so that its caller
+//!   can go on without a window.
+//! - [`app_state`] is the state of the window and its decisions; it needs no window itself.
+//! - [`solver`] runs the simulations.
+//! - [`renderer`] draws. [`Painter`] draws pictures of a run's frames with it, without a window.
 
+mod adapter;
 pub mod app_state;
 pub mod camera;
 mod collider_lines;
@@ -42,7 +43,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use eframe::egui;
-use eframe::egui_wgpu::{WgpuSetup, WgpuSetupCreateNew, wgpu};
+use eframe::egui_wgpu::{WgpuSetup, WgpuSetupCreateNew};
 
 use app_state::AppState;
 pub use controls::key_help;
@@ -55,30 +56,29 @@ use scenes::SceneSource;
 use solver::{SceneRequest, Solver};
 use window::Window;
 
-/// How the window opens.
+/// Options of the window.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The scene to open, by a built-in's name or a path; a run's folder is replayed. `None`: the
-    /// default scene.
+    /// The scene to open: a built-in's name, a path, or the folder of a run to replay. `None`: the default scene.
     pub scene: Option<String>,
-    /// Values of a key that it is to run with, side by side.
+    /// Values of a key to run the scene with, side by side.
     pub comparison: Option<Comparison>,
-    /// Keys and values laid over every scene, as `--set` on the command line.
+    /// Keys and values that override those of every scene, as `--set` on the command line does.
     pub overrides: Vec<(String, String)>,
     /// The instruction set to run on.
     pub isa: Isa,
-    /// Size of the window in points.
+    /// Width and height of the window \[points\].
     pub size: [f32; 2],
-    /// Where F12 puts its pictures.
+    /// The folder that F12 saves pictures in.
     pub screenshots: PathBuf,
-    /// Threads to compute with; 0: as many as the machine has.
+    /// Number of threads to compute with; 0: as many as the machine has.
     pub threads: usize,
-    /// Is told how fast it goes, a line a second.
-    pub say: Option<fn(&str)>,
+    /// A function that gets a line on the speed of drawing and simulating once per second.
+    pub trace: Option<fn(&str)>,
 }
 
 impl Default for Options {
-    /// The default scene, a window for laptops, pictures in the current folder.
+    /// The default scene, a window that fits laptops, and pictures in the current folder.
     fn default() -> Self {
         Self {
             scene: None,
@@ -88,22 +88,22 @@ impl Default for Options {
             size: [1180.0, 720.0],
             screenshots: PathBuf::from("."),
             threads: 0,
-            say: None,
+            trace: None,
         }
     }
 }
 
-/// The scene that opens first, and with Shift+R.
+/// The scene that opens first, and by Shift+R.
 pub const DEFAULT_SCENE: &str = "dam-break";
 
-/// Why there is no window.
+/// The reason why there is no window.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum AppError {
-    /// No screen to open it on, and how that was found out.
+    /// There is no display, as this says.
     NoDisplay(String),
-    /// No graphics adapter, not even one in software, and which were looked for.
+    /// There is no graphics adapter, not even one in software; this says which were looked for.
     NoAdapter(String),
-    /// There is a screen and an adapter, and still it did not open.
+    /// There are a display and an adapter, but the window did not open.
     Window(String),
 }
 
@@ -119,12 +119,12 @@ impl fmt::Display for AppError {
 
 impl std::error::Error for AppError {}
 
-/// Opens the window on the scenes that ship with lahar and on scene files, and returns when it is
-/// closed. Call it on the main thread, once a process.
+/// Opens the window on the scenes that ship with lahar and on scene files, and returns when it is closed. Call it on the
+/// main thread, once per process.
 ///
 /// # Errors
-/// There is no display, no adapter, or the window did not open. A scene that cannot be opened is no
-/// error: the window shows what is wrong.
+/// There is no display, no adapter, or the window did not open. A scene that cannot be opened is no error: the window
+/// shows the mistake in it.
 pub fn run(options: Options) -> Result<(), AppError> {
     let library = SceneLibrary {
         isa: options.isa,
@@ -133,16 +133,16 @@ pub fn run(options: Options) -> Result<(), AppError> {
     run_with(options, Arc::new(library))
 }
 
-/// [`run`] with scenes from elsewhere.
+/// Opens the window on scenes of any source; otherwise as [`run`].
 ///
 /// # Errors
-/// There is no display, no adapter, or the window did not open. A scene that cannot be opened is no
-/// error: the window shows what is wrong.
+/// There is no display, no adapter, or the window did not open. A scene that cannot be opened is no error: the window
+/// shows the mistake in it.
 pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), AppError> {
     let start = Instant::now();
     check_display()?;
     let adapter_setup = WgpuSetupCreateNew::without_display_handle();
-    check_adapter(&adapter_setup.instance_descriptor)?;
+    adapter::check(&adapter_setup.instance_descriptor).map_err(AppError::NoAdapter)?;
 
     let wanted = SceneRequest {
         scene: options.scene.unwrap_or_else(|| DEFAULT_SCENE.to_owned()),
@@ -152,7 +152,7 @@ pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), Ap
     let state = AppState::new(source.list(), DEFAULT_SCENE, Some(wanted));
     let solver = Solver::start(Arc::clone(&source), options.threads)
         .map_err(|error| AppError::Window(format!("no threads for the solver: {error}")))?;
-    let meter = options.say.map(|say| Meter::new(say, start));
+    let meter = options.trace.map(|print| Meter::new(print, start));
     let mut native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("lahar")
@@ -160,7 +160,7 @@ pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), Ap
             .with_inner_size(options.size)
             .with_min_inner_size([360.0, 240.0]),
         renderer: eframe::Renderer::Wgpu,
-        // Of use for wide gradients, of which there are none; it costs software drivers dearly.
+        // The window has no wide gradients to dither, and software drivers take long for it.
         dithering: false,
         ..eframe::NativeOptions::default()
     };
@@ -181,7 +181,7 @@ pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), Ap
             }),
         )
     };
-    // Window systems whose libraries are missing are met with panics below us, not with errors.
+    // If libraries of the window system are missing, the crates below panic instead of returning errors.
     match catch_unwind(AssertUnwindSafe(open)) {
         Ok(Ok(())) => Ok(()),
         Ok(Err(error @ (eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_)))) => {
@@ -193,7 +193,7 @@ pub fn run_with(options: Options, source: Arc<dyn SceneSource>) -> Result<(), Ap
     }
 }
 
-/// Whether there is anything to open a window on; opens nothing.
+/// Checks that there is a display, without opening anything.
 ///
 /// # Errors
 /// [`AppError::NoDisplay`].
@@ -210,33 +210,4 @@ pub fn check_display() -> Result<(), AppError> {
         ));
     }
     Ok(())
-}
-
-/// What is asked for adapters of `backends`, without a display.
-fn instance_of(wanted: &wgpu::InstanceDescriptor, backends: wgpu::Backends) -> wgpu::Instance {
-    wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends,
-        flags: wanted.flags,
-        backend_options: wanted.backend_options.clone(),
-        memory_budget_thresholds: wanted.memory_budget_thresholds,
-        display: None,
-    })
-}
-
-/// Whether there is anything to draw with, software included.
-fn check_adapter(wanted: &wgpu::InstanceDescriptor) -> Result<(), AppError> {
-    let backends = wanted.backends;
-    let instance = instance_of(wanted, backends);
-    let found = pollster::block_on(instance.enumerate_adapters(backends));
-    if found.is_empty() {
-        return Err(AppError::NoAdapter(no_adapter(backends)));
-    }
-    Ok(())
-}
-
-/// That there is none of these.
-fn no_adapter(backends: wgpu::Backends) -> String {
-    format!(
-        "looked for {backends:?} (on Linux, a software adapter comes with the package mesa-vulkan-drivers)"
-    )
 }

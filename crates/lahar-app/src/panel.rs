@@ -385,7 +385,7 @@ fn pointer(state: &mut AppState, ui: &mut Ui) {
     )
     .on_hover_text("How strongly the mouse attracts and repels, pushes and pulls");
     let dimension = state.info().map_or(2, |info| info.dimension);
-    let smallest = state.scenery.smallest(dimension);
+    let smallest = state.scenery.smallest_side(dimension);
     ui.horizontal(|ui| {
         let mut everywhere = state.pointer_tool.reach.is_infinite();
         let most = 2.0 * smallest;

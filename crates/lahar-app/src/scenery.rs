@@ -1,4 +1,4 @@
-//! From snapshots to what is drawn: particles as sprites, the domain's edges, the floor's grid.
+//! Turns snapshots into sprites, and the domain and the floor into lines.
 
 use std::sync::Arc;
 
@@ -13,19 +13,19 @@ use crate::palette::particle_colors;
 use crate::renderer::{Line, Sprites};
 use crate::scenes::SceneInfo;
 
-/// Radius in parts of the spacing: discs that leave no holes between jittered particles.
+/// Radius of a disc in parts of the spacing, large enough to leave no holes between jittered particles.
 const RADIUS_2D: f32 = 1.05;
-/// Balls need less: those behind fill the gaps.
+/// Radius of a ball in parts of the spacing. It is smaller because the balls behind fill the gaps.
 const RADIUS_3D: f32 = 0.65;
 
-/// What stays where it is, and the measure of it.
+/// The resting parts of a scene, and its extent.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scenery {
-    /// Corners of the domain, or of the particles with room to move in \[m\].
+    /// Corners of the domain, or of a box around the particles with space to move in \[m\].
     pub(crate) extent: (V3, V3),
-    /// What is drawn is drawn relative to it \[m\], lest f32 run out of digits.
+    /// The origin that everything is drawn relative to, so that f32 has enough digits \[m\].
     pub(crate) origin: V3,
-    /// Edges and grid.
+    /// The domain's edges and the grid on its floor.
     pub(crate) lines: Arc<Vec<Line>>,
 }
 
@@ -40,7 +40,7 @@ impl Scenery {
         }
     }
 
-    /// Its lines and those of the colliders, at `time` \[s\].
+    /// The lines of the scenery and of the colliders at `time` \[s\].
     pub(crate) fn lines_at(&self, info: &SceneInfo, time: f64) -> Arc<Vec<Line>> {
         if info.colliders.is_empty() {
             return Arc::clone(&self.lines);
@@ -50,14 +50,14 @@ impl Scenery {
         Arc::new([self.lines.as_slice(), &moving].concat())
     }
 
-    /// Its smallest side \[m\].
-    pub(crate) fn smallest(&self, dimension: usize) -> f64 {
+    /// The smallest side of the extent \[m\].
+    pub(crate) fn smallest_side(&self, dimension: usize) -> f64 {
         let size = sub(self.extent.1, self.extent.0);
         (size[..dimension].iter()).fold(f64::INFINITY, |least, side| least.min(*side))
     }
 }
 
-/// The radius that particles are drawn with at first, in parts of what sprites take for their spacing.
+/// The radius that particles are drawn with at first, in parts of the spacing of sprites.
 pub(crate) fn usual_radius(info: &SceneInfo) -> f32 {
     match (info.camera.particle_radius, info.dimension) {
         (Some(_), _) => 1.0,
@@ -66,7 +66,7 @@ pub(crate) fn usual_radius(info: &SceneInfo) -> f32 {
     }
 }
 
-/// The particles of one side.
+/// The sprites of the particles of one side.
 pub(crate) fn sprites(
     snapshot: &Snapshot,
     info: &SceneInfo,
@@ -83,7 +83,7 @@ pub(crate) fn sprites(
             let spacing = |&volume: &f32| if d == 2 { volume.sqrt() } else { volume.cbrt() };
             volumes.to_f32().iter().map(spacing).collect()
         }
-        // A recording without volumes: what two particles along a cell's side would have.
+        // A recording may lack volumes: two particles along a cell's side are assumed.
         (None, None) => vec![0.5 * info.dx as f32; snapshot.count],
     };
     let colors = particle_colors(by, snapshot, info, palette, range);
@@ -99,7 +99,7 @@ pub(crate) fn sprites(
     Sprites { places, colors }
 }
 
-/// The domain, or the box of the particles.
+/// The corners of the domain, or of a box around the particles \[m\].
 fn extent(info: &SceneInfo, snapshot: Option<&Snapshot>) -> (V3, V3) {
     if let Some((min, max)) = info.domain {
         return (min, max);
@@ -123,15 +123,15 @@ fn extent(info: &SceneInfo, snapshot: Option<&Snapshot>) -> (V3, V3) {
         } else if min[i] > max[i] {
             (min[i], max[i]) = (0.0, 1.0);
         } else {
-            // Room to move in.
-            let room = (0.5 * (max[i] - min[i])).max(4.0 * info.dx);
-            (min[i], max[i]) = (min[i] - room, max[i] + room);
+            // The particles need space to move in.
+            let margin = (0.5 * (max[i] - min[i])).max(4.0 * info.dx);
+            (min[i], max[i]) = (min[i] - margin, max[i] + margin);
         }
     }
     (min, max)
 }
 
-/// The domain's edges; in 3D, a grid on its floor too.
+/// The domain's edges and, in 3D, a grid on its floor.
 fn outline(info: &SceneInfo, (min, max): (V3, V3), origin: V3) -> Vec<Line> {
     let mut lines = vec![];
     let mut line = |a: V3, b: V3, half_width: f32, opacity: u8| {
@@ -179,7 +179,7 @@ fn outline(info: &SceneInfo, (min, max): (V3, V3), origin: V3) -> Vec<Line> {
     lines
 }
 
-/// 1, 2 or 5 times a power of ten, at least `least`.
+/// The smallest of 1, 2 and 5 times a power of ten that is at least `least`.
 pub(crate) fn round_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.log10().floor());
     [1.0, 2.0, 5.0, 10.0]

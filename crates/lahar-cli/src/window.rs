@@ -85,7 +85,7 @@ fn open_window(view: Option<View>) -> Result<(), String> {
         options.comparison = view.compare;
         options.isa = view.isa.unwrap_or(options.isa);
         options.threads = view.threads.map_or(options.threads, usize::from);
-        options.say = view.trace.then_some(terminal::note);
+        options.trace = view.trace.then_some(terminal::note);
     }
     if lahar_app::check_display().is_ok() {
         terminal::note(&lahar_app::key_help());

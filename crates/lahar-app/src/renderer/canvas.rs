@@ -1,4 +1,4 @@
-//! A picture's place on the graphics card: its particles, its lines, its texture.
+//! A canvas: the particles, the lines and the texture of one picture on the graphics card.
 
 use std::sync::Arc;
 
@@ -9,16 +9,16 @@ use super::pipelines::{COLOR, DEPTH, Pipelines};
 use super::texels::Texels;
 use super::{Picture, View};
 
-/// What one picture is drawn from, and onto.
+/// The buffers that one picture is drawn from, and the texture that it is drawn onto.
 pub(super) struct Canvas {
     view: wgpu::Buffer,
     sprites: Texels,
-    lines: Growing,
+    lines: LineBuffer,
     target: Option<Target>,
     drawn: Option<Picture>,
 }
 
-/// The picture's texture.
+/// The texture of a picture, with its depth.
 struct Target {
     size: [u32; 2],
     color: wgpu::TextureView,
@@ -37,13 +37,13 @@ impl Canvas {
         Self {
             sprites: Texels::new(device, pipelines, &view, 0),
             view,
-            lines: Growing::new("lines"),
+            lines: LineBuffer::default(),
             target: None,
             drawn: None,
         }
     }
 
-    /// The finished picture onto the window.
+    /// Draws the finished picture onto the window.
     pub(super) fn show(&self, pass: &mut wgpu::RenderPass<'static>, pipelines: &Pipelines) {
         if let Some(target) = &self.target {
             pass.set_pipeline(&pipelines.show);
@@ -52,12 +52,12 @@ impl Canvas {
         }
     }
 
-    /// The texture with the picture; `None` before the first.
+    /// The texture with the picture; `None` before the first picture.
     pub(super) fn texture(&self) -> Option<&wgpu::Texture> {
         self.target.as_ref().map(|target| target.color.texture())
     }
 
-    /// Draws the picture onto its texture, of `samples` × `samples` texels a pixel, if it is not there already.
+    /// Draws the picture onto its texture, with `samples` × `samples` texels per pixel, unless it is there already.
     pub(super) fn draw(
         &mut self,
         device: &wgpu::Device,
@@ -126,7 +126,7 @@ impl Canvas {
         } else {
             &pipelines.discs
         });
-        // Two triangles each.
+        // Each particle is two triangles.
         pass.draw(0..6 * self.sprites.count, 0..1);
         if let Some(lines) = &self.lines.buffer {
             pass.set_pipeline(if picture.solid {
@@ -192,20 +192,13 @@ fn clear_color(color: Color32) -> wgpu::Color {
     wgpu::Color { r, g, b, a }
 }
 
-/// A buffer that is made anew when it gets too small.
-struct Growing {
-    label: &'static str,
+/// The vertex buffer of the lines. It is replaced by a larger one when it gets too small.
+#[derive(Default)]
+struct LineBuffer {
     buffer: Option<wgpu::Buffer>,
 }
 
-impl Growing {
-    fn new(label: &'static str) -> Self {
-        Self {
-            label,
-            buffer: None,
-        }
-    }
-
+impl LineBuffer {
     fn fill(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, bytes: &[u8]) {
         let needed = bytes.len() as u64;
         if needed == 0 {
@@ -213,7 +206,7 @@ impl Growing {
         }
         if self.buffer.as_ref().is_none_or(|b| b.size() < needed) {
             self.buffer = Some(device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(self.label),
+                label: Some("lines"),
                 size: needed.next_multiple_of(4096),
                 usage: wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,

@@ -26,7 +26,7 @@ fn corner(
 ) -> Corner {
     var a = (scene.view * vec4<f32>(start, 1.0)).xyz;
     var b = (scene.view * vec4<f32>(end, 1.0)).xyz;
-    // What is behind the eye is cut off: a perspective has no place for it.
+    // A perspective has no place for points behind the eye: lines are cut off there.
     if scene.projection[2][3] < 0.0 {
         let near = -scene.projection[3][2] / scene.projection[2][2];
         if a.z > near && b.z < near { a = mix(a, b, (a.z - near) / (a.z - b.z)); }

@@ -1,12 +1,12 @@
-//! Draws particles and lines with wgpu, within egui's frame.
+//! The renderer: draws particles and lines with wgpu, within egui's frame.
 //!
 //! ```text
-//!   Picture ──prepare──▶ instances, camera ──▶ own texture with depth ──paint──▶ egui's render pass
+//!   Picture ──prepare──▶ particles, camera ──▶ own texture with depth ──paint──▶ egui's render pass
 //!                         (only what changed)    (only if anything changed)
 //! ```
 //!
-//! A picture has a texture of its own, because egui's pass has no depth and is drawn anew for every
-//! movement of the mouse, when no particle has moved. Without a window there is only the texture: offscreen.rs.
+//! A picture has a texture of its own, for two reasons: egui's pass has no depth, and egui draws anew for each movement
+//! of the mouse, even if no particle has moved. Without a window there is only the texture: see offscreen.rs.
 
 mod canvas;
 mod offscreen;
@@ -26,48 +26,48 @@ use canvas::Canvas;
 pub(crate) use offscreen::Offscreen;
 use pipelines::Pipelines;
 
-/// Particles as the shader takes them, one after the other.
+/// The particles of a picture, as the shader takes them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sprites {
-    /// Position less the picture's origin, and distance to the neighbors at rest \[m\].
+    /// Position relative to the picture's origin, and distance to the neighbors at rest \[m\].
     pub places: Vec<[f32; 4]>,
-    /// Red, green, blue, 255; as many as places.
+    /// Red, green, blue, 255; one color per place.
     pub colors: Vec<[u8; 4]>,
 }
 
-/// A straight line as the shader takes it.
+/// A straight line, as the shader takes it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Line {
-    /// Less the picture's origin \[m\].
+    /// Start relative to the picture's origin \[m\].
     pub start: [f32; 3],
-    /// In pixels.
+    /// Half of the width \[pixels\].
     pub half_width: f32,
-    /// Less the picture's origin \[m\].
+    /// End relative to the picture's origin \[m\].
     pub end: [f32; 3],
     /// Red, green, blue, opacity.
     pub color: [u8; 4],
 }
 
-/// What the camera tells the shaders.
+/// The camera, as the shaders take it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct View {
-    /// World, less the origin, to the camera's axes.
+    /// The matrix from the scene, relative to the origin, to the camera's axes.
     pub view: M4,
-    /// The camera's axes to −1..1.
+    /// The matrix from the camera's axes to −1..1.
     pub projection: M4,
-    /// Size of the picture.
+    /// Width and height of the picture \[pixels\].
     pub pixels: [f32; 2],
     /// Radius of a particle, in parts of its spacing.
     pub radius: f32,
-    /// Uniforms come in multiples of 16 bytes.
+    /// Padding: uniforms come in multiples of 16 bytes.
     pub unused: f32,
 }
 
 impl View {
-    /// What `camera` sees of a scene drawn less `origin` \[m\], on so many pixels that show `aspect` =
-    /// width/height; `radius` of a particle in parts of its spacing.
+    /// The view of `camera` on a scene that is drawn relative to `origin` \[m\], in a picture of this size in pixels and
+    /// this width/height. The `radius` of a particle is in parts of its spacing.
     pub(crate) fn new(
         camera: &Camera,
         origin: V3,
@@ -85,31 +85,31 @@ impl View {
     }
 }
 
-/// All that is drawn at once.
+/// A picture of one side: everything that is drawn at once.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// Which of the pictures in the window it is; each keeps its place on the graphics card.
+    /// The number of the picture in the window. Each keeps its textures on the graphics card.
     pub slot: usize,
-    /// The particles.
+    /// The particles to draw.
     pub sprites: Arc<Sprites>,
-    /// Lines, such as the domain's edges.
+    /// The lines to draw, such as the domain's edges.
     pub lines: Arc<Vec<Line>>,
-    /// The camera.
+    /// The camera, for the shaders.
     pub view: View,
-    /// Balls with depth, not discs.
+    /// True to draw balls with depth, false to draw discs.
     pub solid: bool,
-    /// Behind everything.
+    /// The background color.
     pub background: Color32,
 }
 
 impl Picture {
-    /// Something to add to an egui painter. Draws nothing where [`install`] was not called.
+    /// The shape to add to an egui painter. It draws nothing if [`install`] was not called.
     pub fn shape(self, rect: egui::Rect) -> egui::Shape {
         egui_wgpu::Callback::new_paint_callback(rect, self).into()
     }
 }
 
-/// Makes what [`Picture`]s need to be drawn, once a window.
+/// Makes the pipelines that draw [`Picture`]s. Call it once per window.
 pub fn install(state: &RenderState) {
     let gpu = Gpu {
         pipelines: Pipelines::new(&state.device, state.target_format),
@@ -118,10 +118,10 @@ pub fn install(state: &RenderState) {
     state.renderer.write().callback_resources.insert(gpu);
 }
 
-/// What stays on the graphics card.
+/// The objects that stay on the graphics card.
 struct Gpu {
     pipelines: Pipelines,
-    /// By the slots of pictures.
+    /// The canvases, by the slots of pictures.
     canvases: Vec<Canvas>,
 }
 

@@ -1,4 +1,4 @@
-//! Pictures without a window: drawn onto a texture, and read back.
+//! Draws pictures without a window: onto a texture that is read back.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -9,6 +9,7 @@ use super::Picture;
 use super::canvas::Canvas;
 use super::pipelines::{COLOR, Pipelines};
 use super::texels::Texels;
+use crate::adapter;
 
 /// Bytes of a pixel in [`COLOR`].
 const PIXEL: usize = 4;
@@ -19,12 +20,12 @@ pub(crate) struct Offscreen {
     queue: wgpu::Queue,
     pipelines: Pipelines,
     canvas: Canvas,
-    /// Texels a pixel and axis.
+    /// Texels per pixel along each axis.
     samples: u32,
     fault: Fault,
 }
 
-/// The first thing that went wrong on the device; it says so from threads of its own.
+/// The first error of the device, which reports errors from threads of its own.
 #[derive(Clone, Default)]
 struct Fault(Arc<Mutex<Option<String>>>);
 
@@ -40,11 +41,11 @@ impl Fault {
     }
 }
 
-/// An adapter that can draw without a screen, software included, and its name.
+/// Finds an adapter that can draw without a display, software included, and its name.
 ///
 /// # Errors
 /// There is none, and which were looked for.
-fn adapter() -> Result<(wgpu::Adapter, String), String> {
+fn find_adapter() -> Result<(wgpu::Adapter, String), String> {
     let setup = WgpuSetupCreateNew::without_display_handle();
     let wanted = setup.instance_descriptor;
     let options = wgpu::RequestAdapterOptions {
@@ -52,30 +53,30 @@ fn adapter() -> Result<(wgpu::Adapter, String), String> {
         ..wgpu::RequestAdapterOptions::default()
     };
     let find = |backends| {
-        let instance = crate::instance_of(&wanted, backends);
+        let instance = adapter::instance(&wanted, backends);
         pollster::block_on(instance.request_adapter(&options)).ok()
     };
-    // GL is asked where there is nothing better only.
+    // GL is asked last, where there is nothing better.
     let gl = wgpu::Backends::GL;
     let adapter = (find(wanted.backends - gl))
         .or_else(|| find(wanted.backends & gl))
-        .ok_or_else(|| crate::no_adapter(wanted.backends))?;
+        .ok_or_else(|| adapter::none_found(wanted.backends))?;
     let info = adapter.get_info();
     let name = format!("{} ({})", info.name, info.backend);
     Ok((adapter, name))
 }
 
 impl Offscreen {
-    /// The best adapter there is and its name, for pictures that are no larger than `size` \[pixels\]; each pixel is
-    /// the mean of `samples` × `samples` points, or of fewer where the adapter has no room for them.
+    /// Opens the best adapter and returns its name. Pictures may be as large as `size` \[pixels\]. Each pixel is the mean
+    /// of `samples` × `samples` points, or of fewer if the adapter's textures are too small for them.
     ///
     /// # Errors
     /// There is no adapter, or it gives no device.
     pub(crate) fn new(size: [u32; 2], samples: u32) -> Result<(Self, String), String> {
-        let (adapter, name) = adapter()?;
+        let (adapter, name) = find_adapter()?;
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("pictures"),
-            // All it has: pictures may be large, and particles many.
+            // Pictures may be large, and particles many: everything the adapter offers is asked for.
             required_limits: adapter.limits(),
             ..wgpu::DeviceDescriptor::default()
         }))
@@ -105,10 +106,10 @@ impl Offscreen {
         Ok((offscreen, name))
     }
 
-    /// Draws a picture, and waits for it.
+    /// Draws a picture and waits for it.
     ///
     /// # Errors
-    /// It is too large for the adapter, or drawing failed; then nothing can be drawn any more.
+    /// The picture is too large for the adapter, or drawing failed. After a failure nothing can be drawn any more.
     pub(crate) fn draw(&mut self, picture: &Picture) -> Result<image::Picture, String> {
         let samples = self.samples;
         let [width, height] = picture.view.pixels.map(|side| (side as u32).max(1));
@@ -124,7 +125,7 @@ impl Offscreen {
             ));
         }
         let particles = picture.sprites.places.len();
-        let room = Texels::most(&self.device);
+        let room = Texels::max_particles(&self.device);
         if particles > room {
             return Err(format!(
                 "{particles} particles are too many for the adapter, which draws {room} at most"
@@ -180,8 +181,8 @@ impl Offscreen {
     }
 }
 
-/// Pixels, each the mean of `samples` × `samples` texels; a row of texels is `row` bytes, what is beyond `width` pixels
-/// is left out.
+/// The pixels of a picture, each the mean of `samples` × `samples` texels. A row of texels takes `row` bytes, of which
+/// those beyond `width` pixels are padding.
 fn mean_of_samples(texels: &[u8], row: usize, samples: usize, width: usize) -> Vec<u8> {
     let count = (samples * samples) as u32;
     let mut rgb = Vec::with_capacity(3 * width * (texels.len() / (row * samples)));
@@ -209,7 +210,7 @@ mod tests {
 
     #[test]
     fn pixels_are_the_mean_of_their_samples() {
-        // Two pixels of 2 x 2 texels, and room at the end of rows.
+        // Two pixels of 2 × 2 texels, and padding at the end of rows.
         let row = |texels: [u8; 4]| {
             let mut row: Vec<u8> = texels.iter().flat_map(|&t| [t, 2 * t, 0, 255]).collect();
             row.extend([9; 16]);

@@ -1,10 +1,10 @@
-// Particles as squares that face the camera: discs with smooth edges in 2D, shaded balls in 3D.
-// Six corners of two triangles each; the particles themselves are in textures, see texels.rs.
+// Draws particles as squares that face the camera: discs with smooth edges in 2D, shaded balls in 3D.
+// A square is two triangles with six corners. The particles are in textures, see texels.rs.
 
 struct View {
-    view: mat4x4<f32>,        // world, less the origin, to the camera's axes
+    view: mat4x4<f32>,        // scene, relative to the origin, to the camera's axes
     projection: mat4x4<f32>,
-    pixels: vec2<f32>,        // size of the picture
+    pixels: vec2<f32>,        // width and height of the picture
     radius: f32,              // radius of a particle, in parts of its spacing
     unused: f32,
 };
@@ -36,12 +36,12 @@ fn corner(@builtin(vertex_index) index: u32) -> Corner {
     let which = select(k, select(5u - k, 3u, k == 5u), k > 2u);
     var out: Corner;
     let center = (scene.view * vec4<f32>(position, 1.0)).xyz;
-    // Never smaller than a pixel or so: a far particle should fade, not flicker.
+    // A particle is never much smaller than a pixel: a far one should fade, not flicker.
     let w = scene.projection[2][3] * center.z + scene.projection[3][3];
     let pixel = 2.0 * w / (scene.projection[1][1] * scene.pixels.y);
     let radius = max(scene.radius * spacing, 0.7 * pixel);
     let at = vec2<f32>(f32(which & 1u), f32(which >> 1u)) * 2.0 - 1.0;
-    // Room for half a pixel of soft edge.
+    // The square is larger than the disc by half a pixel, for the soft edge.
     let reach = 1.0 + 0.5 * pixel / radius;
     out.at = at * reach;
     out.position = scene.projection * vec4<f32>(center + vec3<f32>(out.at * radius, 0.0), 1.0);

@@ -1,13 +1,15 @@
-//! How particles, lines and finished pictures are drawn.
+//! The pipelines that draw particles, lines and finished pictures.
 
 use eframe::egui_wgpu::wgpu;
 
 use super::Line;
 
+/// Format of a picture's texture.
 pub(super) const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+/// Format of a picture's depth.
 pub(super) const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
-/// Made once a window.
+/// All pipelines, made once per window.
 pub(super) struct Pipelines {
     pub(super) discs: wgpu::RenderPipeline,
     pub(super) balls: wgpu::RenderPipeline,
@@ -59,14 +61,14 @@ impl Pipelines {
                 },
             ],
         });
-        let make = |label, source, fragment, instances, order| {
+        let make = |label, source, fragment, instances, covering| {
             make(
                 (device, &view_layout),
                 label,
                 source,
                 fragment,
                 instances,
-                order,
+                covering,
             )
         };
         let lines = wgpu::VertexBufferLayout {
@@ -77,16 +79,16 @@ impl Pipelines {
         let particle_shader = include_str!("particles.wgsl");
         let line_shader = include_str!("lines.wgsl");
         Self {
-            discs: make("discs", particle_shader, "disc", None, Order::Over),
-            balls: make("balls", particle_shader, "ball", None, Order::Nearest),
+            discs: make("discs", particle_shader, "disc", None, Covering::Over),
+            balls: make("balls", particle_shader, "ball", None, Covering::Nearest),
             lines_over_discs: make(
                 "lines",
                 line_shader,
                 "line",
                 Some(lines.clone()),
-                Order::Over,
+                Covering::Over,
             ),
-            lines_among_balls: make("lines", line_shader, "line", Some(lines), Order::Behind),
+            lines_among_balls: make("lines", line_shader, "line", Some(lines), Covering::Behind),
             show: show_pipeline(device, &show_layout, window),
             view_layout,
             show_layout,
@@ -95,7 +97,7 @@ impl Pipelines {
     }
 }
 
-/// A texture that the vertex shader reads, texel by texel.
+/// The layout of a texture that the vertex shader reads texel by texel.
 fn texels(binding: u32) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
@@ -109,14 +111,14 @@ fn texels(binding: u32) -> wgpu::BindGroupLayoutEntry {
     }
 }
 
-/// Who covers whom.
+/// The rule by which shapes cover each other.
 #[derive(Clone, Copy)]
-enum Order {
-    /// The later one, by its opacity.
+enum Covering {
+    /// The later shape covers the earlier one, by its opacity.
     Over,
-    /// The nearer one.
+    /// The nearer shape covers the farther one.
     Nearest,
-    /// Blended, where nothing is nearer.
+    /// The shape is blended in where nothing is nearer.
     Behind,
 }
 
@@ -126,18 +128,18 @@ fn make(
     source: &str,
     fragment: &str,
     instances: Option<wgpu::VertexBufferLayout<'_>>,
-    order: Order,
+    covering: Covering,
 ) -> wgpu::RenderPipeline {
     let module = shader(device, label, source);
-    // Particles make their own triangles.
+    // The shader makes the triangles of particles.
     let primitive = instances
         .as_ref()
         .map_or_else(Default::default, |_| strip());
     let buffers: Vec<_> = instances.into_iter().map(Some).collect();
-    let (blend, depth_write, compare) = match order {
-        Order::Over => (true, false, wgpu::CompareFunction::Always),
-        Order::Nearest => (false, true, wgpu::CompareFunction::Less),
-        Order::Behind => (true, false, wgpu::CompareFunction::Less),
+    let (blend, depth_write, compare) = match covering {
+        Covering::Over => (true, false, wgpu::CompareFunction::Always),
+        Covering::Nearest => (false, true, wgpu::CompareFunction::Less),
+        Covering::Behind => (true, false, wgpu::CompareFunction::Less),
     };
     let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: Some(label),

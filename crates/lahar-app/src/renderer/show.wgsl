@@ -1,4 +1,4 @@
-// The finished picture onto the window.
+// Draws the finished picture onto the window.
 
 @group(0) @binding(0) var picture: texture_2d<f32>;
 @group(0) @binding(1) var nearest: sampler;
@@ -22,7 +22,7 @@ fn as_is(in: Corner) -> @location(0) vec4<f32> {
     return textureSample(picture, nearest, in.at);
 }
 
-// For windows that take light, not screen values.
+// For windows that expect linear light in place of screen values.
 @fragment
 fn to_linear(in: Corner) -> @location(0) vec4<f32> {
     let c = textureSample(picture, nearest, in.at);

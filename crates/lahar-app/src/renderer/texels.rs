@@ -1,33 +1,32 @@
-//! Particles on the graphics card: two textures that the vertex shader reads, rows of [`WIDTH`] particles.
+//! Particles on the graphics card: two textures that the vertex shader reads, with rows of [`WIDTH`] particles.
 //!
-//! A texture, because GL and WebGL2 have no storage buffers in vertex shaders; and not one instance a
-//! particle, because drivers that draw with the processor take instances one by one, which was measured
-//! to cost them most of their time.
+//! They are textures because GL and WebGL2 have no storage buffers in vertex shaders. They are not instances because
+//! drivers that draw with the processor take instances one by one, which was measured to cost most of their time.
 
 use eframe::egui_wgpu::wgpu;
 
 use super::Sprites;
 use super::pipelines::Pipelines;
 
-/// Particles in a row; particles.wgsl has the same number.
+/// Number of particles in a row; particles.wgsl has the same number.
 const WIDTH: u32 = 2048;
 
-/// Two textures and the camera, bound.
+/// The textures of places and colors, and their bind group with the camera.
 pub(super) struct Texels {
     places: wgpu::Texture,
     colors: wgpu::Texture,
     pub(super) group: wgpu::BindGroup,
-    /// Particles in it.
+    /// Number of particles in the textures.
     pub(super) count: u32,
 }
 
 impl Texels {
-    /// How many particles textures of this device take.
-    pub(super) fn most(device: &wgpu::Device) -> usize {
+    /// The largest number of particles that textures of this device hold.
+    pub(super) fn max_particles(device: &wgpu::Device) -> usize {
         WIDTH as usize * device.limits().max_texture_dimension_2d as usize
     }
 
-    /// Room for `particles` of them, or as many as a texture of this device takes.
+    /// Makes textures for this number of particles, or for as many as the device allows.
     pub(super) fn new(
         device: &wgpu::Device,
         pipelines: &Pipelines,
@@ -38,7 +37,7 @@ impl Texels {
         let rows = u32::try_from(particles.div_ceil(WIDTH as usize)).unwrap_or(most);
         let size = wgpu::Extent3d {
             width: WIDTH,
-            // Powers of two: emitters need not have new textures each frame.
+            // Powers of two, so that emitters need not have new textures in each frame.
             height: rows.clamp(1, most).next_power_of_two().min(most),
             depth_or_array_layers: 1,
         };
@@ -84,25 +83,26 @@ impl Texels {
         }
     }
 
-    fn room(&self) -> usize {
+    fn capacity(&self) -> usize {
         WIDTH as usize * self.places.height() as usize
     }
 
-    /// Whether so many particles need larger textures, and there are any.
+    /// True if this number of particles needs larger textures, and the device has larger ones.
     pub(super) fn is_too_small(&self, device: &wgpu::Device, particles: usize) -> bool {
-        particles > self.room() && self.places.height() < device.limits().max_texture_dimension_2d
+        particles > self.capacity()
+            && self.places.height() < device.limits().max_texture_dimension_2d
     }
 
-    /// Takes in the particles, as many as there is room for.
+    /// Writes the particles into the textures, as many as fit.
     pub(super) fn fill(&mut self, queue: &wgpu::Queue, sprites: &Sprites) {
-        let count = sprites.places.len().min(self.room());
+        let count = sprites.places.len().min(self.capacity());
         self.count = count as u32;
         write(queue, &self.places, &sprites.places[..count]);
         write(queue, &self.colors, &sprites.colors[..count]);
     }
 }
 
-/// Whole rows, then what is left.
+/// Writes whole rows, then the rest.
 fn write<T: bytemuck::Pod>(queue: &wgpu::Queue, texture: &wgpu::Texture, texels: &[T]) {
     let width = WIDTH as usize;
     let whole = texels.len() / width * width;
