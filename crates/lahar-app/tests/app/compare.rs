@@ -1,4 +1,4 @@
-//! Settings side by side.
+//! Comparisons: a scene with several settings side by side.
 
 use super::*;
 use eframe::egui::{Key, Rect, pos2, vec2};
@@ -57,7 +57,7 @@ fn the_panel_compares_numbers_too() {
 }
 
 #[test]
-fn sides_run_in_step_each_as_it_would_alone() {
+fn sides_run_in_step_and_each_has_the_bits_of_a_run_alone() {
     let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Fields(vec![Field::Velocity]));
     solver.order(Order::Open(compared("dam-break")));
@@ -76,7 +76,7 @@ fn sides_run_in_step_each_as_it_would_alone() {
         "the transfers do not differ"
     );
 
-    // One of them alone, to the same frame.
+    // The second side alone, to the same frame.
     let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Fields(vec![Field::Velocity]));
     solver.order(Order::Open(SceneRequest {
@@ -110,7 +110,7 @@ fn a_substep_keeps_the_sides_together() {
 }
 
 #[test]
-fn what_goes_wrong_on_a_side_is_said_with_its_title() {
+fn a_side_that_cannot_be_opened_ends_the_comparison() {
     let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Open(SceneRequest {
         comparison: Some("transfer=apic,magic".parse().unwrap()),
@@ -124,10 +124,10 @@ fn what_goes_wrong_on_a_side_is_said_with_its_title() {
 }
 
 #[test]
-fn sides_fill_the_window_as_large_as_can_be() {
+fn sides_fill_the_window_as_large_as_possible() {
     let room = Rect::from_min_size(pos2(10.0, 20.0), vec2(800.0, 600.0));
     assert_eq!(view::cells(room, 1, 1.0), [room]);
-    // Wide scenes one above the other, tall ones beside each other, four in a square.
+    // Wide scenes stand one above the other, tall ones beside each other, four in a square.
     let wide = view::cells(room, 2, 3.0);
     assert_eq!(
         wide[1],

@@ -1,4 +1,4 @@
-//! Pictures, where there is something to draw with.
+//! Pictures of the window, on machines with a graphics adapter.
 
 use super::*;
 use eframe::egui_wgpu::{
@@ -6,7 +6,7 @@ use eframe::egui_wgpu::{
 };
 use egui_kittest::wgpu::WgpuTestRenderer;
 
-/// `None` where there is no adapter.
+/// A renderer for tests; `None` if there is no adapter.
 fn renderer() -> Option<WgpuTestRenderer> {
     let setup = WgpuSetup::CreateNew(WgpuSetupCreateNew::without_display_handle());
     let configuration = WgpuConfiguration {
@@ -26,7 +26,7 @@ fn renderer() -> Option<WgpuTestRenderer> {
 }
 
 #[test]
-fn water_is_seen_where_it_is() {
+fn water_is_drawn_in_its_place() {
     for scene in ["dam-break", "dam-break-3d"] {
         let Some(renderer) = renderer() else { return };
         let mut state = AppState::new(
@@ -36,7 +36,7 @@ fn water_is_seen_where_it_is() {
         );
         state.show_panel = false;
         state.show_hints = false;
-        state.receive(shown(scene, 1));
+        state.receive(opened(scene, 1));
         let mut harness = Harness::builder()
             .with_size(Vec2::new(600.0, 400.0))
             .renderer(renderer)
@@ -54,7 +54,7 @@ fn water_is_seen_where_it_is() {
             let [r, g, b, _] = picture.get_pixel(at[0] as u32, at[1] as u32).0;
             [r, g, b].map(i32::from)
         };
-        // Teal in the middle of the block, the background in the far corner.
+        // The middle of the block is teal, and the far corner shows the background.
         let [r, g, b] = color_at([0.5, 0.6, if scene == "dam-break" { 0.0 } else { 0.5 }]);
         assert!(g > r + 30 && b > r + 30, "{scene}: {r} {g} {b}");
         let [r, g, b] = color_at([1.9, 1.1, if scene == "dam-break" { 0.0 } else { 0.5 }]);

@@ -1,4 +1,4 @@
-//! What keys do.
+//! The actions of the keys.
 
 use super::*;
 use eframe::egui::{Event, Key, Modifiers};
@@ -68,7 +68,7 @@ fn keys_turn_gravity_at_the_scenes_magnitude() {
 }
 
 #[test]
-fn in_3d_gravity_goes_to_the_windows_left_however_the_camera_stands() {
+fn in_3d_gravity_follows_the_window_however_the_camera_stands() {
     let mut harness = harness("dam-break-3d");
     assert_eq!(gravity(&mut harness, Key::D), [9.81, 0.0, 0.0]);
     let camera = harness.state_mut().camera.as_mut().unwrap();
@@ -192,7 +192,7 @@ fn the_list_reaches_every_scene_by_keys() {
 }
 
 #[test]
-fn where_a_scene_wants_it_gravity_acts_while_a_key_is_held() {
+fn a_scene_may_have_gravity_only_while_a_key_is_down() {
     let mut harness = harness("held");
     let told = |harness: &mut Harness<'_, AppState>| match orders(harness)[..] {
         [Order::Command(Command::Gravity(gravity))] => gravity,
@@ -224,7 +224,7 @@ fn where_a_scene_wants_it_gravity_acts_while_a_key_is_held() {
 }
 
 #[test]
-fn a_scenes_own_speed_and_hand_are_taken_over() {
+fn the_speed_and_the_pointer_tool_of_a_scene_are_adopted() {
     let harness = harness("held");
     let state = harness.state();
     assert_eq!(state.speed, 0.5);

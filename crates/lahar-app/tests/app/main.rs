@@ -1,5 +1,5 @@
-//! The window without a window: keys, clicks and drags in, orders out; and the solver behind it.
-//! Nothing here needs a display. What needs a graphics adapter is left out where there is none.
+//! Tests of the window without a display: keys, clicks and drags go in, and orders come out. Tests of the solver stand
+//! beside them. Tests that need a graphics adapter pass without one.
 
 mod compare;
 mod drawn;
@@ -20,7 +20,7 @@ use lahar_app::scenes::SceneSource;
 use lahar_app::solver::{Order, Readouts, SceneRequest, Solver, SolverState};
 use lahar_app::{DEFAULT_SCENE, view};
 
-/// A scene alone and as it is.
+/// A request for a scene without changes or comparison.
 fn alone(scene: &str) -> SceneRequest {
     SceneRequest {
         scene: scene.into(),
@@ -32,7 +32,7 @@ fn open(scene: &str) -> Order {
     Order::Open(alone(scene))
 }
 
-/// Numbers of the first side.
+/// The numbers of the first side.
 fn first(shown: &SolverState) -> Readouts {
     shown
         .sides
@@ -40,8 +40,8 @@ fn first(shown: &SolverState) -> Readouts {
         .map_or_else(Readouts::default, |side| side.readouts)
 }
 
-/// What the solver would show of a scene at its start.
-fn shown(name: &str, opened: u64) -> SolverState {
+/// The solver's state after opening a scene.
+fn opened(name: &str, opened: u64) -> SolverState {
     let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Pause(true));
     solver.order(open(name));
@@ -50,7 +50,7 @@ fn shown(name: &str, opened: u64) -> SolverState {
     shown
 }
 
-/// The newest state that satisfies `until`.
+/// Waits for a state that satisfies `until`.
 fn wait(solver: &mut Solver, until: impl Fn(&SolverState) -> bool) -> SolverState {
     let start = Instant::now();
     loop {
@@ -66,7 +66,7 @@ fn wait(solver: &mut Solver, until: impl Fn(&SolverState) -> bool) -> SolverStat
 }
 
 fn harness(scene: &str) -> Harness<'static, AppState> {
-    harness_of(shown(scene, 1))
+    harness_of(opened(scene, 1))
 }
 
 fn harness_of(shown: SolverState) -> Harness<'static, AppState> {

@@ -1,4 +1,4 @@
-//! What the mouse does in the scene.
+//! The actions of the mouse in the scene.
 
 use super::*;
 use eframe::egui::{self, Modifiers, PointerButton, pos2};
@@ -14,8 +14,8 @@ fn press(harness: &Harness<'_, AppState>, pos: egui::Pos2, button: PointerButton
     });
 }
 
-/// The hand that the simulation is told of when `button` goes down at `at`.
-fn held(harness: &mut Harness<'_, AppState>, at: egui::Pos2, button: PointerButton) -> Pointer {
+/// Presses `button` at `at` and returns the pointer that the simulation is told of.
+fn pressed(harness: &mut Harness<'_, AppState>, at: egui::Pos2, button: PointerButton) -> Pointer {
     harness.hover_at(at);
     press(harness, at, button, true);
     harness.run();
@@ -34,8 +34,8 @@ fn the_left_button_attracts_and_the_right_repels_until_released() {
         (PointerButton::Secondary, -1.0),
     ] {
         let at = pos2(700.0, 400.0);
-        let pointer = held(&mut harness, at, button);
-        // The domain is 2 m by 1.2 m, and in view.
+        let pointer = pressed(&mut harness, at, button);
+        // The domain is 2 m × 1.2 m, and the whole of it is in view.
         assert!((0.0..2.0).contains(&pointer.position[0]), "{pointer:?}");
         assert!((0.0..1.2).contains(&pointer.position[1]), "{pointer:?}");
         let PointerAction::Attract(pull) = pointer.action else {
@@ -53,14 +53,14 @@ fn the_left_button_attracts_and_the_right_repels_until_released() {
 }
 
 #[test]
-fn where_the_scene_says_so_the_left_button_pushes_and_the_right_pulls() {
+fn in_a_scene_that_pushes_the_left_button_pushes_and_the_right_pulls() {
     let mut harness = harness("pushed");
     for (button, push) in [
         (PointerButton::Primary, 5.0),
         (PointerButton::Secondary, -5.0),
     ] {
         let at = pos2(700.0, 400.0);
-        let pointer = held(&mut harness, at, button);
+        let pointer = pressed(&mut harness, at, button);
         let expected = PointerAction::Push {
             acceleration: push,
             power: 4.0,
@@ -73,7 +73,7 @@ fn where_the_scene_says_so_the_left_button_pushes_and_the_right_pulls() {
 }
 
 #[test]
-fn in_3d_a_drag_orbits_and_the_hand_takes_hold_of_the_nearest_water() {
+fn in_3d_a_drag_orbits_and_the_pointer_acts_on_the_nearest_water() {
     let mut harness = harness("dam-break-3d");
     let at = pos2(700.0, 400.0);
     let yaw = harness.state().camera.as_ref().unwrap().yaw;

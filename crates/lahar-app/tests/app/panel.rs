@@ -1,4 +1,4 @@
-//! What the panel's widgets do.
+//! The actions of the panel's widgets.
 
 use super::*;
 use eframe::egui::Key;
@@ -103,6 +103,6 @@ fn tab_reaches_every_widget_of_the_panel() {
         });
     }
     assert_eq!(missing, [""; 0]);
-    // And sliders with their numbers, colors, choices.
+    // Sliders with their numbers, colors and choices are reached too.
     assert!(reached.len() >= 30, "{}", reached.len());
 }

@@ -1,4 +1,4 @@
-//! Finished runs, replayed.
+//! Replays of finished runs.
 
 use super::*;
 use eframe::egui::Key;
@@ -9,7 +9,7 @@ use lahar_app::solver::Condition;
 use lahar_io::export::Format;
 use lahar_io::output::{PhaseSeconds, Record, Status, frame_name, write_frame};
 
-/// Leaves what a run of so many frames would.
+/// Makes the folder of a run with this number of frames.
 fn record(folder: &std::path::Path, frames: u64) {
     let record = Record {
         version: "0".into(),
@@ -84,7 +84,7 @@ fn a_run_plays_at_its_own_pace_to_its_end_and_again_from_its_start() {
     let start = Instant::now();
     let mut solver = solver(folder.path(), false);
     let shown = wait(&mut solver, |shown| shown.condition == Condition::Ended);
-    // Three frames of a tenth of a second.
+    // There are three frames of a tenth of a second.
     assert!(start.elapsed().as_secs_f64() > 0.29);
     assert_eq!((first(&shown).frame, position(&shown)), (3, 0.8));
     let info = shown.info.unwrap();
@@ -123,7 +123,7 @@ fn any_frame_can_be_gone_to_and_stepped_from() {
 }
 
 #[test]
-fn a_run_without_particles_and_a_folder_without_a_run_are_said() {
+fn a_run_without_particles_and_a_folder_without_a_run_are_errors() {
     let folder = tempfile::tempdir().unwrap();
     for expected in ["not a run's folder", "--format npz"] {
         let mut solver = solver(folder.path(), false);

@@ -1,4 +1,4 @@
-//! The solver behind the window.
+//! The solver behind the window, on its own.
 
 use super::*;
 use lahar::Field;
@@ -8,7 +8,7 @@ use lahar_app::solver::Condition;
 use lahar_scene::driver::Driver;
 use lahar_scene::scene::Setting;
 
-/// A scene, to be run without a window.
+/// Opens a scene to run it without a window.
 fn driver(source: &dyn SceneSource, scene: &str) -> Driver {
     match source.open(scene, &vec![]).unwrap().content {
         SceneContent::Simulation(driver) => *driver,
@@ -68,7 +68,7 @@ fn pause_stops_the_clock_and_a_substep_is_one_substep() {
 }
 
 #[test]
-fn never_faster_than_real_time_times_speed() {
+fn simulated_time_never_overtakes_real_time_times_speed() {
     let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(Order::Speed(0.1));
     solver.order(open("dam-break"));
@@ -76,7 +76,7 @@ fn never_faster_than_real_time_times_speed() {
     let start = Instant::now();
     let shown = wait(&mut solver, |shown| first(shown).time >= 0.045);
     let elapsed = start.elapsed().as_secs_f64();
-    // A frame is computed when it begins to be due.
+    // A frame is computed as soon as its start is due.
     assert!(
         first(&shown).time <= 0.1 * elapsed + 1.5 / 60.0,
         "{} s in {elapsed} s",
@@ -85,7 +85,7 @@ fn never_faster_than_real_time_times_speed() {
 }
 
 #[test]
-fn a_scene_that_cannot_be_opened_is_said_and_the_next_one_opens() {
+fn a_scene_that_cannot_be_opened_is_an_error_and_the_next_one_opens() {
     let mut solver = Solver::start(Arc::new(support::TestScenes), 1).unwrap();
     solver.order(open("broken"));
     let shown = wait(&mut solver, |shown| {
@@ -104,39 +104,29 @@ fn scenes_that_ship_open_with_a_color_for_every_body() {
     let list = library.list();
     assert_eq!(list[0].name, DEFAULT_SCENE);
     for card in list {
-        // Small: what is tested is the window's side of it.
-        let stage = library
+        let opened = library
             .open(&card.name, &vec![])
             .unwrap_or_else(|why| panic!("{why}"));
-        let stage = stage.info;
-        assert_eq!(stage.dimension, card.dimension);
-        assert!(!stage.swatches.is_empty());
-        let has = |key: &str| stage.settings.iter().any(|setting| setting.key == key);
+        let info = opened.info;
+        assert_eq!(info.dimension, card.dimension);
+        assert!(!info.swatches.is_empty());
+        let has = |key: &str| info.settings.iter().any(|setting| setting.key == key);
         assert!(
             has("dx") && has("transfer") && has("kernel"),
             "{:?}",
-            stage.settings
+            info.settings
         );
         let of_material =
             |setting: &Setting| setting.key.starts_with("materials.") && setting.name == "density";
-        assert!(
-            stage.settings.iter().any(of_material),
-            "{:?}",
-            stage.settings
-        );
-        // What is offered is accepted, unchanged.
-        let all: Vec<_> = (stage.settings.iter())
+        assert!(info.settings.iter().any(of_material), "{:?}", info.settings);
+        // The settings are accepted as they are offered.
+        let all: Vec<_> = (info.settings.iter())
             .map(|setting| (setting.key.clone(), setting.value.to_toml()))
             .collect();
         library
             .open(&card.name, &all)
             .unwrap_or_else(|why| panic!("{why}"));
-        assert!(
-            stage
-                .body_swatches
-                .iter()
-                .all(|&i| i < stage.swatches.len())
-        );
+        assert!(info.body_swatches.iter().all(|&i| i < info.swatches.len()));
     }
     assert!(library.open("no-such-scene", &vec![]).is_err());
 }

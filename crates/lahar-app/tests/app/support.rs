@@ -1,4 +1,4 @@
-//! Scenes made by hand, so that the window's tests need no files.
+//! Small scenes for the window's tests, which need no files.
 
 use lahar::material::{Eos, Fluid};
 use lahar::{
@@ -11,7 +11,7 @@ use lahar_app::scenes::{
 use lahar_scene::driver::{Driver, FrameEnd, Schedule};
 use lahar_scene::scene::{BodyView, Camera, Controls, Setting, SettingValue};
 
-/// Two blocks of water in 2D, one in 3D, and a scene that cannot be opened.
+/// Blocks of water in 2D and 3D, and a scene that cannot be opened.
 pub(crate) struct TestScenes;
 
 impl SceneSource for TestScenes {
@@ -118,7 +118,7 @@ impl SceneSource for TestScenes {
     }
 }
 
-/// What can be changed about the blocks.
+/// The settings of the blocks.
 #[derive(Clone, Copy)]
 struct Water {
     viscosity: f64,
