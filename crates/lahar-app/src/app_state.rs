@@ -35,7 +35,7 @@ pub enum Effect {
 /// A message over the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    /// The message.
+    /// The text of the message.
     pub text: String,
     /// When it disappears \[s of egui's clock\].
     pub until: f64,

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! DIR/A/, DIR/B/          one run per value
-//! DIR/images/000000.png   their pictures, side by side
-//! DIR/video.gif           and as a film
-//! DIR/plots/energy.svg    their diagnostics in the same plots
+//! DIR/images/000000.png   the pictures of all runs, side by side
+//! DIR/video.gif           the same as a film
+//! DIR/plots/energy.svg    the diagnostics of all runs in the same plots
 //! ```
 
 use std::collections::BTreeSet;
@@ -25,7 +25,7 @@ use crate::{args, run, terminal};
 /// The width of each picture, unless an option sets it \[pixels\].
 const WIDTH: u32 = 420;
 
-/// Runs the scene of `args` with each value of `comparison`.
+/// Runs the scene of `args` once for each value of `comparison`.
 pub(crate) fn compare(args: &args::Run, comparison: &Comparison) -> Result<ExitCode, CliError> {
     let scene = Scene::load(&args.scene.scene, &args.scene.set)?;
     let [width, height] = scene.output.picture_size;

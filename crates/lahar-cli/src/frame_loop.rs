@@ -5,7 +5,7 @@ use lahar_io::checkpoint::{self, Header, Start};
 use lahar_io::output::{OutputError, PhaseSeconds, Writer};
 use lahar_scene::driver::{Driver, Event, Frame};
 
-use crate::progress::{Progress, Standing};
+use crate::progress::{Milestone, Progress};
 use crate::run_plan::RunPlan;
 
 use crate::{clock, interrupt};
@@ -44,7 +44,7 @@ pub(crate) struct FrameLoop<'a> {
     writer: Writer,
     /// The fields of particles that output needs.
     fields: Vec<Field>,
-    /// What the run had done when this process took it up; `None` for a new run.
+    /// The progress of the run when this process took it up; `None` for a new run.
     resumed: Option<checkpoint::Progress>,
     /// Seconds from the start of this process to its first substep, without output.
     startup_seconds: f64,
@@ -125,7 +125,7 @@ impl<'a> FrameLoop<'a> {
             self.checkpoint().map_err(RunError::Output)?;
         }
         let particle_steps = self.driver.particle_steps() as f64;
-        progress.update(&Standing {
+        progress.update(&Milestone {
             frame: number,
             time: self.driver.simulation().time(),
             rate: particle_steps / self.solving_seconds().max(1e-9),

@@ -18,7 +18,7 @@ pub(crate) struct Progress {
 }
 
 /// The state of a run after a frame.
-pub(crate) struct Standing {
+pub(crate) struct Milestone {
     /// The number of the frame.
     pub(crate) frame: u64,
     /// Simulated time \[s\].
@@ -53,18 +53,18 @@ impl Progress {
     }
 
     /// Shows the state of a run after a frame.
-    pub(crate) fn update(&mut self, standing: &Standing) {
-        let left = standing.seconds / standing.frame.max(1) as f64
-            * self.frames.saturating_sub(standing.frame) as f64;
+    pub(crate) fn update(&mut self, milestone: &Milestone) {
+        let left = milestone.seconds / milestone.frame.max(1) as f64
+            * self.frames.saturating_sub(milestone.frame) as f64;
         let text = format!(
             "t = {:.3} s  {} particle-steps/s  dt {:.2e} s ({})  {} left",
-            standing.time,
-            with_prefix(standing.rate),
-            standing.advance.dt_min,
-            standing.advance.limit.name(),
+            milestone.time,
+            with_prefix(milestone.rate),
+            milestone.advance.dt_min,
+            milestone.advance.limit.name(),
             duration(left),
         );
-        self.show(standing.frame, text);
+        self.show(milestone.frame, text);
     }
 
     /// Shows that `frame` frames are done, with a text.

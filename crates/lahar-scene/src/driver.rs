@@ -8,8 +8,8 @@
 //! ```
 //!
 //! A frame is one output interval. The command line, the window, validation and benchmarks all drive their
-//! simulations here, so they agree on where frames end, on what happens when one fails, and on what follows
-//! when gravity is changed. [`Driver::pump`] returns between substeps whenever its caller asks, without changing
+//! simulations here, so they agree on the ends of frames, on the retry of a frame that fails, and on the stiffness that
+//! follows gravity. [`Driver::pump`] returns between substeps whenever its caller asks, without changing
 //! a bit of the run. It needs no thread, clock or file of its own, so it also serves a page in a browser.
 //!
 //! ```
@@ -35,7 +35,7 @@ use lahar::{Advance, Checkpoint, Command, Failure, ProbeSamples, Retry, Simulate
 
 use crate::scene::{Scene, SoundSpeeds};
 
-/// Where a frame ends.
+/// The rule by which a frame ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FrameEnd {
     /// Frame k ends at k / rate of simulated time; the rate is in frames per simulated second \[1/s\].
@@ -46,10 +46,10 @@ pub enum FrameEnd {
     Open,
 }
 
-/// Where frames end, and what is due after them.
+/// The rule by which frames end, and the outputs that are due after them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Schedule {
-    /// Where a frame ends.
+    /// The rule by which a frame ends.
     pub frame_end: FrameEnd,
     /// Output is due after every frame whose number is a multiple of this; 0 counts as 1.
     pub output_every: u64,
@@ -84,7 +84,7 @@ impl Schedule {
     }
 }
 
-/// A finished frame, and what is due after it.
+/// A finished frame, and the outputs that are due after it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// The frame's number; frame 0 is the start.
@@ -99,7 +99,7 @@ pub struct Frame {
     pub probes: Vec<ProbeSamples>,
 }
 
-/// What happened during [`Driver::pump`].
+/// The result of [`Driver::pump`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Event {
     /// The caller stopped the driver between two substeps of a frame.
@@ -113,7 +113,7 @@ pub enum Event {
     Failed(Box<Failure>),
 }
 
-/// Where the frame at hand ends.
+/// The end of the frame at hand.
 #[derive(Clone, Copy)]
 enum Target {
     Time(f64),
@@ -211,12 +211,12 @@ impl Driver {
         self.schedule.frame_end = frame_end;
     }
 
-    /// The simulation.
+    /// The simulation, for snapshots and the like.
     pub fn simulation(&self) -> &dyn Simulate {
         &*self.simulation
     }
 
-    /// The simulation, for snapshots, diagnostics and the like. Substeps taken behind the driver's back do not
+    /// The simulation, for diagnostics and the like. Substeps taken behind the driver's back do not
     /// count towards its frames.
     pub fn simulation_mut(&mut self) -> &mut dyn Simulate {
         &mut *self.simulation
@@ -558,7 +558,7 @@ mod tests {
     }
 
     #[test]
-    fn cancelling_gives_the_frame_back() {
+    fn canceling_gives_the_frame_back() {
         let mut driver = water();
         run_to(&mut driver, 1, u64::MAX);
         let (before, steps) = (snapshot(&driver), driver.particle_steps());
@@ -580,7 +580,7 @@ mod tests {
     }
 
     #[test]
-    fn the_retries_of_a_cancelled_frame_are_forgotten() {
+    fn the_retries_of_a_canceled_frame_are_forgotten() {
         let mut driver = Driver::new(stiff_jelly(), Schedule::new(FrameEnd::Rate(0.25)));
         while !matches!(driver.pump_substeps(1), Event::Retry(_)) {}
         assert_eq!(driver.retries().len(), 1 + driver.settled_retries().len());

@@ -176,7 +176,7 @@ impl Live {
         }
     }
 
-    /// What there is to see of each side: a snapshot with `fields`, and the numbers of the panel.
+    /// A snapshot of each side with `fields`, and its numbers for the panel.
     pub(super) fn sides(&self, fields: &[Field], real_time: f64) -> Vec<Side> {
         let side = |runner: &Runner| runner.side(fields, real_time);
         self.runners.iter().map(side).collect()

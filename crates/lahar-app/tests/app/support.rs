@@ -72,26 +72,7 @@ impl SceneSource for TestScenes {
                 color: None,
             }],
             camera: Camera::default(),
-            controls: if name == "pushed" {
-                Controls {
-                    pull: Some(5.0),
-                    reach: Some(0.25),
-                    push: Some(4.0),
-                    ..Controls::default()
-                }
-            } else if name == "held" {
-                Controls {
-                    speed: 0.5,
-                    gravity: Some(30.0),
-                    hold: true,
-                    pull: Some(100.0),
-                    reach: Some(f64::INFINITY),
-                    softening: Some(0.01),
-                    push: None,
-                }
-            } else {
-                Controls::default()
-            },
+            controls: controls(name),
             settings: vec![
                 setting(
                     "materials.water.viscosity",
@@ -115,6 +96,28 @@ impl SceneSource for TestScenes {
                 Schedule::new(FrameEnd::Rate(60.0)),
             ))),
         })
+    }
+}
+
+/// The controls of the scene of this name.
+fn controls(name: &str) -> Controls {
+    match name {
+        "pushed" => Controls {
+            pull: Some(5.0),
+            reach: Some(0.25),
+            push: Some(4.0),
+            ..Controls::default()
+        },
+        "held" => Controls {
+            speed: 0.5,
+            gravity: Some(30.0),
+            hold: true,
+            pull: Some(100.0),
+            reach: Some(f64::INFINITY),
+            softening: Some(0.01),
+            push: None,
+        },
+        _ => Controls::default(),
     }
 }
 

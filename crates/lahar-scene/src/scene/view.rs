@@ -36,7 +36,7 @@ pub struct SceneView {
     pub bodies: Vec<BodyView>,
     /// The colliders, in the order of the scene.
     pub colliders: Vec<ColliderInfo>,
-    /// The camera.
+    /// The camera that the scene asks for.
     pub camera: Camera,
     /// The controls of keys and mouse.
     pub controls: Controls,
