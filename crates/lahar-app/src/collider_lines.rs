@@ -1,6 +1,6 @@
 //! Colliders as lines: their edges, and in 2D a hatching that fills them.
 
-use lahar::Solid;
+use lahar::geometry::Primitive;
 use lahar_io::image::COLLIDER;
 use lahar_scene::scene::ColliderInfo;
 
@@ -35,7 +35,7 @@ pub(crate) fn collider_lines(
                 color: [r, g, b, opacity],
             });
         };
-        for solid in placed.solids() {
+        for solid in placed.primitives() {
             for path in outline(&solid, dimension, extent) {
                 for pair in path.windows(2) {
                     // What is inside of another solid of the same collider is no edge.
@@ -90,9 +90,9 @@ fn hatching((min, max): (V3, V3), inside: impl Fn(V3) -> bool) -> Vec<[V3; 2]> {
 }
 
 /// Edges of a solid, as paths.
-fn outline(solid: &Solid<3>, dimension: usize, extent: (V3, V3)) -> Vec<Vec<V3>> {
+fn outline(solid: &Primitive<3>, dimension: usize, extent: (V3, V3)) -> Vec<Vec<V3>> {
     match solid {
-        Solid::Box { center, half, axes } => {
+        Primitive::Box { center, half, axes } => {
             let corner = |bits: usize| {
                 (0..dimension).fold(*center, |at, i| {
                     let way = if bits >> i & 1 == 1 { 1.0 } else { -1.0 };
@@ -109,7 +109,7 @@ fn outline(solid: &Solid<3>, dimension: usize, extent: (V3, V3)) -> Vec<Vec<V3>>
             }
             edges
         }
-        Solid::Ball { center, radius } => {
+        Primitive::Ball { center, radius } => {
             let unit = |i: usize| core::array::from_fn(|j| f64::from(i == j));
             let planes: &[(usize, usize)] = if dimension == 2 {
                 &[(0, 1)]
@@ -121,7 +121,7 @@ fn outline(solid: &Solid<3>, dimension: usize, extent: (V3, V3)) -> Vec<Vec<V3>>
                 .map(|&(i, j)| circle(*center, unit(i), unit(j), *radius))
                 .collect()
         }
-        Solid::HalfSpace { point, normal } => {
+        Primitive::HalfSpace { point, normal } => {
             let [side, other] = across(*normal, dimension);
             let reach = longest(extent) * 3.0;
             let corners: Vec<V3> = if dimension == 2 {
@@ -143,10 +143,10 @@ fn outline(solid: &Solid<3>, dimension: usize, extent: (V3, V3)) -> Vec<Vec<V3>>
             };
             within(&corners, extent)
         }
-        Solid::Polygon { points } => (0..points.len())
+        Primitive::Polygon { points } => (0..points.len())
             .map(|i| divided(points[i], points[(i + 1) % points.len()]))
             .collect(),
-        Solid::Rod {
+        Primitive::Rod {
             from,
             to,
             radius,

@@ -24,12 +24,12 @@ mod step;
 mod transfer;
 
 pub use boundary::{
-    BoundaryImpulse, Collider, Contact, Corners, Cushion, Domain, Keyframe, Motion, Sides,
+    BoundaryImpulse, Collider, Contact, Cushion, Domain, Keyframe, Motion, Sides,
     WallStyle,
 };
 pub use error::{DtLimit, Failure, SetupError};
 pub use forces::{AccelerationField, Force, Pull};
-pub use geometry::Solid;
+pub use geometry::{Bounds, Primitive, Shape};
 pub use instance::Instance;
 pub use material::{Material, Model};
 pub use particles::{Data, Field, Snapshot};

@@ -43,7 +43,7 @@ fn colliders_are_drawn_where_they_are() {
         let red = [255, 0, 0];
         let mut collider = Collider::still(
             "ball",
-            vec![lahar::Solid::Ball {
+            vec![lahar::Primitive::Ball {
                 center: [0.5, 0.5, 0.5 * f64::from(dimension - 2)],
                 radius: 0.3,
             }],

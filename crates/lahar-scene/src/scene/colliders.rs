@@ -7,8 +7,8 @@ use super::plan::contact_with_friction;
 use super::read::Reader;
 use super::shapes::read_shape;
 use crate::error::SceneError;
-use lahar::geometry::Shape;
-use lahar::{Collider, Contact, Keyframe, Motion, Solid};
+use lahar::geometry::{Primitive, Shape};
+use lahar::{Collider, Contact, Keyframe, Motion};
 
 /// Names that sides of the domain have.
 const SIDES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
@@ -28,22 +28,22 @@ impl ColliderInfo {
     /// What it is, in a few words.
     pub fn words(&self) -> String {
         let Collider {
-            solids,
+            primitives,
             contact,
             motion,
             ..
         } = &self.collider;
-        let kind = |solid: &Solid<3>| match solid {
-            Solid::Box { .. } => "box",
-            Solid::Ball { .. } => "ball",
-            Solid::HalfSpace { .. } => "half-space",
-            Solid::Polygon { .. } => "polygon",
-            Solid::Rod { round: true, .. } => "capsule",
-            Solid::Rod { round: false, .. } => "cylinder",
+        let kind = |primitive: &Primitive<3>| match primitive {
+            Primitive::Box { .. } => "box",
+            Primitive::Ball { .. } => "ball",
+            Primitive::HalfSpace { .. } => "half-space",
+            Primitive::Polygon { .. } => "polygon",
+            Primitive::Rod { round: true, .. } => "capsule",
+            Primitive::Rod { round: false, .. } => "cylinder",
         };
-        let shape = match &solids[..] {
+        let shape = match &primitives[..] {
             [one] => kind(one).to_owned(),
-            all => format!("{} solids", all.len()),
+            all => format!("{} parts", all.len()),
         };
         let (contact, friction) = match contact {
             Contact::Sticky => ("sticky", 0.0),
@@ -85,9 +85,9 @@ pub(super) fn read_colliders<const D: usize>(
             return Err(table.error_at("name", format!("two colliders are called \"{name}\"")));
         }
         let thin = collider
-            .solids
+            .primitives
             .iter()
-            .filter_map(Solid::thickness)
+            .filter_map(Primitive::thickness)
             .fold(f64::INFINITY, f64::min);
         if thin < 2.0 * dx {
             warnings.push(format!("collider \"{name}\" is {thin:.4} m thin, less than two cells: what is on its two sides feels each other through it"));
@@ -109,19 +109,19 @@ fn read_collider<const D: usize>(
         return Err(table.error(format!("collider \"{name}\" has no shape")));
     };
     let shape: Shape<D> = read_shape(&shape, files, 0)?;
-    let solids = shape.solids().map_err(|what| {
+    let primitives = shape.primitives().map_err(|part| {
         table
-            .error_at("shape", format!("a collider cannot be a {what} yet"))
+            .error_at("shape", format!("a collider cannot be a {part} yet"))
             .hint("boxes, balls, half-spaces, polygons, cylinders, capsules and unions of them are possible, and scale by one number, rotate, translate, copies")
     })?;
     let contact = contact_with_friction(table)?;
     let center = match table.opt_vector("center") {
         Some(center) => center,
-        None => middle(&shape, &solids),
+        None => middle(&shape, &primitives),
     };
     Ok(Collider {
         name,
-        solids,
+        primitives,
         contact,
         center,
         motion: read_motion(table, center)?,
@@ -129,10 +129,10 @@ fn read_collider<const D: usize>(
 }
 
 /// The middle of the shape's bounds; a half-space's point where it has none.
-fn middle<const D: usize>(shape: &Shape<D>, solids: &[Solid<D>]) -> [f64; D] {
+fn middle<const D: usize>(shape: &Shape<D>, primitives: &[Primitive<D>]) -> [f64; D] {
     let bounds = shape.bounds();
     let has_end = (0..D).all(|i| bounds.min[i].is_finite() && bounds.max[i].is_finite());
-    match solids.first() {
+    match primitives.first() {
         Some(first) if !has_end => first.center(),
         _ => bounds.middle(),
     }
@@ -226,8 +226,8 @@ pub(super) fn infos<const D: usize>(
 /// A collider as it is in space: in 2D without end along z.
 fn in_space<const D: usize>(collider: &Collider<D>) -> Collider<3> {
     let three = |v: [f64; D]| core::array::from_fn(|i| if i < D { v[i] } else { 0.0 });
-    let solid = |solid: &Solid<D>| match solid {
-        Solid::Box { center, half, axes } => Solid::Box {
+    let space = |primitive: &Primitive<D>| match primitive {
+        Primitive::Box { center, half, axes } => Primitive::Box {
             center: three(*center),
             half: core::array::from_fn(|i| if i < D { half[i] } else { f64::INFINITY }),
             axes: core::array::from_fn(|i| {
@@ -238,32 +238,32 @@ fn in_space<const D: usize>(collider: &Collider<D>) -> Collider<3> {
                 }
             }),
         },
-        Solid::Ball { center, radius } => Solid::Ball {
+        Primitive::Ball { center, radius } => Primitive::Ball {
             center: three(*center),
             radius: *radius,
         },
-        Solid::HalfSpace { point, normal } => Solid::HalfSpace {
+        Primitive::HalfSpace { point, normal } => Primitive::HalfSpace {
             point: three(*point),
             normal: three(*normal),
         },
-        Solid::Rod {
+        Primitive::Rod {
             from,
             to,
             radius,
             round,
-        } => Solid::Rod {
+        } => Primitive::Rod {
             from: three(*from),
             to: three(*to),
             radius: *radius,
             round: *round,
         },
-        Solid::Polygon { points } => Solid::Polygon {
+        Primitive::Polygon { points } => Primitive::Polygon {
             points: points.iter().copied().map(three).collect(),
         },
     };
     Collider {
         name: collider.name.clone(),
-        solids: collider.solids.iter().map(solid).collect(),
+        primitives: collider.primitives.iter().map(space).collect(),
         contact: collider.contact,
         center: three(collider.center),
         motion: match &collider.motion {

@@ -11,13 +11,13 @@ use super::{Files, Limits};
 use crate::error::{SceneError, nearest};
 use crate::particle_list::ParticleList;
 use lahar::geometry::sampling::{Sampling, expected_count};
-use lahar::geometry::{Bounds, Region, Shape};
+use lahar::geometry::{Bounds, Region};
 use lahar::material::{
     Corotated, Dust, Eos, Fluid, HardeningFrom, HerschelBulkley, JacobianUpdate, NeoHookean,
     Rheology, Snow, ViscousStress, VolumeCorrection, VolumeRule, lame, rheology::CREEP_RATE,
 };
 use lahar::{
-    Collider, Contact, Corners, Cushion, Domain, Force, ForceForm, Kernel, Material, Model, Probe,
+    Collider, Contact, Cushion, Domain, Force, ForceForm, Kernel, Material, Model, Probe,
     Sides, TimeStep, Transfer, WallStyle,
 };
 
@@ -31,7 +31,7 @@ pub(crate) struct Plan<const D: usize> {
     /// Simulated time of a run \[s\].
     pub(crate) duration: f64,
     pub(crate) domain: Option<Domain<D>>,
-    pub(crate) clamp: Option<Corners<D>>,
+    pub(crate) clamp: Option<Bounds<D>>,
     pub(crate) cushion: Option<Cushion<D>>,
     pub(crate) colliders: Vec<Collider<D>>,
     pub(crate) kernel: Kernel,
@@ -117,10 +117,7 @@ impl<const D: usize> Body<D> {
     pub(crate) fn bounds(&self) -> Bounds<D> {
         match &self.source {
             Source::Shape { region, .. } => *region.bounds(),
-            Source::List(list) => Shape::Polygon {
-                points: list.position.clone(),
-            }
-            .bounds(),
+            Source::List(list) => Bounds::around_points(&list.position),
         }
     }
 
@@ -507,13 +504,13 @@ fn read_domain<const D: usize>(
 }
 
 /// What keeps particles in, besides walls.
-type Keep<const D: usize> = (Option<Corners<D>>, Option<Cushion<D>>);
+type Keep<const D: usize> = (Option<Bounds<D>>, Option<Cushion<D>>);
 
 fn read_keep<const D: usize>(domain: &Reader<'_>) -> Result<Keep<D>, SceneError> {
-    let corners = |table: &Reader<'_>| -> Result<Corners<D>, SceneError> {
+    let corners = |table: &Reader<'_>| -> Result<Bounds<D>, SceneError> {
         let (min, max): ([f64; D], [f64; D]) = (table.vector("min")?, table.vector("max")?);
         match (0..D).find(|&i| !(max[i] > min[i])) {
-            None => Ok(Corners { min, max }),
+            None => Ok(Bounds { min, max }),
             Some(i) => {
                 let message = format!(
                     "this box has no extent along {}: max {} is not above min {}",

@@ -72,6 +72,15 @@ impl<'a> Reader<'a> {
         self.required(key, self.opt_text(key))
     }
 
+    /// Returns what the word of `key` stands for; an error if it is none of `words`.
+    pub(crate) fn choice<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Result<T, SceneError> {
+        let given = self.text(key)?;
+        match words.iter().find(|(word, _)| *word == given) {
+            Some((_, meaning)) => Ok(*meaning),
+            None => Err(self.error_at(key, format!("\"{given}\" is no value of \"{key}\""))),
+        }
+    }
+
     pub(crate) fn opt_number(&self, key: &str) -> Option<f64> {
         self.table.get(key)?.value.as_number()
     }

@@ -1,285 +1,208 @@
-//! Shapes of bodies, as scenes write them.
+//! Reads shapes of bodies and colliders.
 
 use super::Limits;
 use super::files::Files;
-use super::plan::{AXES, Source, point};
 use super::read::Reader;
+use super::text::AXES;
 use crate::error::SceneError;
-use lahar::geometry::sampling::Sampling;
-use lahar::geometry::{Bounds, Motion, Region, Shape, area, crossing};
+use crate::text::shorten;
+use lahar::geometry::{
+    Bounds, Primitive, Shape, Transform, crossing_sides, polygon_area,
+};
 use std::sync::Arc;
 
-/// Primitive shapes in one body at the most: each is asked about every particle.
-const MOST_PARTS: usize = 10_000;
+/// Parts of one shape at most: each is tested for every particle.
+pub(super) const LARGEST_PART_COUNT: usize = 10_000;
 
-/// Shapes inside each other at the most.
+/// Levels of shapes inside shapes at most.
 const DEEPEST: usize = 32;
 
-/// What a shape is.
-const KINDS: [&str; 10] = [
-    "box",
-    "ball",
-    "half_space",
-    "polygon",
-    "cylinder",
-    "capsule",
-    "mesh",
-    "union",
-    "difference",
-    "intersection",
-];
+/// Corners of a polygon up to which its sides are tested against each other.
+const LARGEST_TESTED_POLYGON: usize = 4000;
 
-pub(super) fn read_shape_source<const D: usize>(
-    name: &str,
-    body: &Reader<'_>,
-    table: &Reader<'_>,
-    (clip, dx): (Bounds<D>, f64),
-    (files, limits): (&Files<'_>, &Limits),
-) -> Result<Source<D>, SceneError> {
-    let sampling = match body.text("sampling")? {
-        "lattice" => Sampling::Lattice,
-        "random" => Sampling::Random,
-        "poisson" => Sampling::Poisson,
-        _ => Sampling::Jittered,
-    };
-    let amounts: Vec<&str> = ["particles_per_cell", "spacing", "count"]
-        .into_iter()
-        .filter(|key| body.has(key))
-        .collect();
-    if let [first, second, ..] = amounts[..] {
-        return Err(body.error_at_key(
-            second,
-            format!("\"{first}\" and \"{second}\" say the same; give one"),
-        ));
-    }
-    let shape = read_shape(table, (files, limits), 0)?;
-    if shape.parts() > MOST_PARTS {
-        let message = format!("this shape has {} parts", shape.parts());
-        return Err(body
-            .error_at("shape", message)
-            .hint(format!("at most {MOST_PARTS} are possible")));
-    }
-    let reach = shape.bounds().intersection(&clip);
-    if !(0..D).all(|i| reach.min[i].is_finite() && reach.max[i].is_finite()) {
-        return Err(body
-            .error_at("shape", format!("body \"{name}\" has no end"))
-            .hint(
-                "a half-space needs a [domain] to end at, or an intersection with another shape",
-            ));
-    }
-    let region = Region::new(shape, clip);
-    if !(region.volume() > 0.0) {
-        let bounds = region.shape().bounds();
-        let apart = (0..D).any(|i| bounds.max[i] < clip.min[i] || bounds.min[i] > clip.max[i]);
-        if !apart && !matches!(region.shape(), Shape::HalfSpace { .. }) {
-            return Err(body
-                .error_at("shape", format!("body \"{name}\" has no volume"))
-                .hint("nothing is left of its shape, or it is flat"));
-        }
-        let error = body.error_at("shape", format!("body \"{name}\" lies outside the domain"));
-        return Err(match region.shape() {
-            Shape::HalfSpace { .. } => {
-                error.hint("move the point, or turn the normal round: it points out of the body")
-            }
-            _ => error.hint(format!(
-                "it reaches from {} to {}, the domain from {} to {}",
-                point(&bounds.min),
-                point(&bounds.max),
-                point(&clip.min),
-                point(&clip.max)
-            )),
-        });
-    }
-    let cells = region.volume() / dx.powi(D as i32);
-    let count = body.opt_integer("count").map(|count| count as usize);
-    if count.is_some() && !matches!(sampling, Sampling::Random | Sampling::Poisson) {
-        return Err(body.error_at_key(
-            "count",
-            format!(
-                "\"count\" is for sampling = \"random\" or \"poisson\", this body has \"{}\"",
-                sampling.name()
-            ),
-        ));
-    }
-    let per_cell = match (count, body.opt_number("particles_per_cell")) {
-        (Some(count), _) => count as f64 / cells,
-        (None, Some(per_cell)) => per_cell,
-        (None, None) => f64::from(1 << D),
-    };
-    let spacing = body
-        .opt_number("spacing")
-        .unwrap_or(dx / per_cell.powf(1.0 / D as f64));
-    if region.volume() / spacing.powi(D as i32) < 0.5 {
-        let key = amounts.first().copied().unwrap_or("shape");
-        let error = body.error_at(
-            key,
-            format!(
-                "body \"{name}\" comes to no particle: its volume is {:.3e}, a particle's {:.3e}",
-                region.volume(),
-                spacing.powi(D as i32)
-            ),
-        );
-        return Err(error.hint("make the body larger, or dx or spacing smaller"));
-    }
-    Ok(Source::Shape {
-        region,
-        spacing,
-        count,
-        sampling,
-    })
+/// The files that a shape may name, and limits on their size.
+pub(super) type FileAccess<'a> = (&'a Files<'a>, &'a Limits);
+
+/// Reads the shape in the table `shape`, the key `kind` of it being there, `depth` shapes inside others.
+type ReadKind<const D: usize> =
+    fn(shape: &Reader<'_>, kind: &str, FileAccess<'_>, depth: usize) -> Result<Shape<D>, SceneError>;
+
+/// The keys that say what kind of shape a table is, in the order of the documentation.
+fn kinds<const D: usize>() -> [(&'static str, ReadKind<D>); 10] {
+    [
+        ("box", |shape, kind, _, _| read_box(&inner(shape, kind)?)),
+        ("ball", |shape, kind, _, _| read_ball(&inner(shape, kind)?)),
+        ("half_space", |shape, kind, _, _| read_half_space(&inner(shape, kind)?)),
+        ("polygon", |shape, kind, _, _| read_polygon(shape, &inner(shape, kind)?)),
+        ("cylinder", |shape, kind, _, _| read_cylinder(shape, &inner(shape, kind)?)),
+        ("capsule", |shape, kind, _, _| read_rod(&inner(shape, kind)?, true)),
+        ("mesh", |shape, _, files, _| read_mesh(shape, files)),
+        ("union", |shape, kind, files, depth| Ok(Shape::Union(read_parts(shape, kind, files, depth)?))),
+        ("difference", |shape, kind, files, depth| Ok(Shape::Difference(read_parts(shape, kind, files, depth)?))),
+        ("intersection", |shape, kind, files, depth| Ok(Shape::Intersection(read_parts(shape, kind, files, depth)?))),
+    ]
 }
 
-/// A shape, `depth` shapes inside others.
+/// Reads a shape, with its transform and copies.
 pub(super) fn read_shape<const D: usize>(
     table: &Reader<'_>,
-    files: (&Files<'_>, &Limits),
+    files: FileAccess<'_>,
     depth: usize,
 ) -> Result<Shape<D>, SceneError> {
     if depth > DEEPEST {
         return Err(table.error(format!("shapes are nested more than {DEEPEST} deep")));
     }
-    let kinds: Vec<&str> = KINDS.into_iter().filter(|kind| table.has(kind)).collect();
-    let kind = match kinds[..] {
+    let kinds = kinds::<D>();
+    let given: Vec<_> = kinds.iter().filter(|(kind, _)| table.has(kind)).collect();
+    let (kind, read) = match given[..] {
         [kind] => kind,
         [] => {
-            return Err(table
-                .error("this shape is empty")
-                .hint(format!("give one of: {}", KINDS.join(", "))));
+            return Err(table.error("this shape is empty").hint(format!(
+                "give one of: {}",
+                kinds.map(|(kind, _)| kind).join(", ")
+            )));
         }
-        [first, second, ..] => {
+        [(first, _), (second, _), ..] => {
             return Err(table
                 .error_at_key(second, format!("this shape is a \"{first}\" already"))
                 .hint("make a second body of it, or a union: union = [{ .. }, { .. }]"));
         }
     };
-    let shape = match kind {
-        "union" | "difference" | "intersection" => {
-            let shapes = table
-                .tables(kind)
-                .into_iter()
-                .map(|(_, part)| read_shape(&part, files, depth + 1))
-                .collect::<Result<Vec<_>, _>>()?;
-            match kind {
-                "union" => Shape::Union(shapes),
-                "difference" => Shape::Difference(shapes),
-                _ => Shape::Intersection(shapes),
-            }
-        }
-        "mesh" => read_mesh(table, files)?,
-        _ => match table.opt_table(kind) {
-            Some(inner) => read_primitive(table, kind, &inner)?,
-            None => return Err(table.error_at(kind, format!("\"{kind}\" must be a table"))),
-        },
-    };
-    let shape = read_motion(table, shape)?;
+    let shape = read(table, kind, files, depth)?;
+    let shape = read_transform(table, shape)?;
     read_copies(table, shape)
 }
 
-/// A shape that is not made of others.
-fn read_primitive<const D: usize>(
-    table: &Reader<'_>,
-    kind: &str,
-    inner: &Reader<'_>,
-) -> Result<Shape<D>, SceneError> {
-    match kind {
-        "box" => {
-            let (min, max): ([f64; D], [f64; D]) = (inner.vector("min")?, inner.vector("max")?);
-            if let Some(i) = (0..D).find(|&i| !(max[i] > min[i])) {
-                return Err(inner.error_at(
-                    "max",
-                    format!(
-                        "the box has no extent along {}: max {} is not above min {}",
-                        AXES[i], max[i], min[i]
-                    ),
-                ));
-            }
-            Ok(Shape::Box { min, max })
-        }
-        "ball" => Ok(Shape::Ball {
-            center: inner.vector("center")?,
-            radius: inner.number("radius")?,
-        }),
-        "half_space" => {
-            let normal: [f64; D] = inner.vector("normal")?;
-            let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
-            if !(length > 0.0 && length.is_finite()) {
-                return Err(inner.error_at("normal", "the normal has no direction"));
-            }
-            Ok(Shape::HalfSpace {
-                point: inner.vector("point")?,
-                normal: normal.map(|n| n / length),
-            })
-        }
-        "polygon" => {
-            if D == 3 {
-                return Err(table
-                    .error_at_key("polygon", "polygons are for 2D only")
-                    .hint("this scene has dimension = 3"));
-            }
-            let points = inner.opt_rows::<D>("points").unwrap_or_default();
-            /// Corners up to which sides are tested against each other.
-            const TESTED: usize = 4000;
-            if points.len() <= TESTED
-                && let Some((i, j)) = crossing(&points)
-            {
-                return Err(inner.error_at("points", format!("the polygon crosses itself: the sides from point {i} and from point {j} (from 0)")));
-            }
-            let bounds = Shape::Polygon {
-                points: points.clone(),
-            }
-            .bounds();
-            if points.len() < 3 || !(area(&points).abs() > 1e-12 * bounds.volume()) {
-                return Err(inner.error_at(
-                    "points",
-                    format!("a polygon of {} points in a line has no area", points.len()),
-                ));
-            }
-            Ok(Shape::Polygon { points })
-        }
-        "cylinder" | "capsule" => {
-            let round = kind == "capsule";
-            if D == 2 && !round {
-                return Err(table
-                    .error_at_key("cylinder", "cylinders are for 3D only")
-                    .hint("this scene has dimension = 2; a capsule is a strip with round ends, a box can be turned by rotate"));
-            }
-            let (from, to): ([f64; D], [f64; D]) = (inner.vector("from")?, inner.vector("to")?);
-            if from == to && !round {
-                return Err(inner.error_at("to", "the cylinder has no length"));
-            }
-            Ok(Shape::Rod {
-                from,
-                to,
-                radius: inner.number("radius")?,
-                round,
-            })
-        }
-        other => Err(table.error_at(other, format!("\"{other}\" is no shape"))),
-    }
+/// Returns the table that describes a shape of this kind.
+fn inner<'a>(shape: &Reader<'a>, kind: &str) -> Result<Reader<'a>, SceneError> {
+    shape
+        .opt_table(kind)
+        .ok_or_else(|| shape.error_at(kind, format!("\"{kind}\" must be a table")))
 }
 
-/// The inside of a mesh file.
-fn read_mesh<const D: usize>(
+/// Reads the shapes that a set operation combines.
+fn read_parts<const D: usize>(
+    shape: &Reader<'_>,
+    kind: &str,
+    files: FileAccess<'_>,
+    depth: usize,
+) -> Result<Vec<Shape<D>>, SceneError> {
+    shape
+        .tables(kind)
+        .into_iter()
+        .map(|(_, part)| read_shape(&part, files, depth + 1))
+        .collect()
+}
+
+fn read_box<const D: usize>(table: &Reader<'_>) -> Result<Shape<D>, SceneError> {
+    let (min, max): ([f64; D], [f64; D]) = (table.vector("min")?, table.vector("max")?);
+    if let Some(i) = (0..D).find(|&i| !(max[i] > min[i])) {
+        return Err(table.error_at(
+            "max",
+            format!(
+                "the box has no extent along {}: max {} is not above min {}",
+                AXES[i], max[i], min[i]
+            ),
+        ));
+    }
+    Ok(Shape::Box { min, max })
+}
+
+fn read_ball<const D: usize>(table: &Reader<'_>) -> Result<Shape<D>, SceneError> {
+    Ok(Primitive::Ball {
+        center: table.vector("center")?,
+        radius: table.number("radius")?,
+    }
+    .into())
+}
+
+fn read_half_space<const D: usize>(table: &Reader<'_>) -> Result<Shape<D>, SceneError> {
+    let normal: [f64; D] = table.vector("normal")?;
+    let length = normal.iter().map(|n| n * n).sum::<f64>().sqrt();
+    if !(length > 0.0 && length.is_finite()) {
+        return Err(table.error_at("normal", "the normal has no direction"));
+    }
+    Ok(Primitive::HalfSpace {
+        point: table.vector("point")?,
+        normal: normal.map(|n| n / length),
+    }
+    .into())
+}
+
+fn read_polygon<const D: usize>(
+    shape: &Reader<'_>,
     table: &Reader<'_>,
-    (files, limits): (&Files<'_>, &Limits),
+) -> Result<Shape<D>, SceneError> {
+    if D == 3 {
+        return Err(shape
+            .error_at_key("polygon", "polygons are for 2D only")
+            .hint("this scene has dimension = 3"));
+    }
+    let points = table.opt_rows::<D>("points").unwrap_or_default();
+    if points.len() <= LARGEST_TESTED_POLYGON
+        && let Some((i, j)) = crossing_sides(&points)
+    {
+        return Err(table.error_at("points", format!("the polygon crosses itself: the sides from point {i} and from point {j} (from 0)")));
+    }
+    let bounds = Bounds::around_points(&points);
+    if points.len() < 3 || !(polygon_area(&points).abs() > 1e-12 * bounds.volume()) {
+        return Err(table.error_at(
+            "points",
+            format!("a polygon of {} points in a line has no area", points.len()),
+        ));
+    }
+    Ok(Primitive::Polygon { points }.into())
+}
+
+fn read_cylinder<const D: usize>(
+    shape: &Reader<'_>,
+    table: &Reader<'_>,
 ) -> Result<Shape<D>, SceneError> {
     if D == 2 {
-        return Err(table
+        return Err(shape
+            .error_at_key("cylinder", "cylinders are for 3D only")
+            .hint("this scene has dimension = 2; a capsule is a strip with round ends, a box can be turned by rotate"));
+    }
+    read_rod(table, false)
+}
+
+/// Reads a capsule (`round`) or a cylinder.
+fn read_rod<const D: usize>(table: &Reader<'_>, round: bool) -> Result<Shape<D>, SceneError> {
+    let (from, to): ([f64; D], [f64; D]) = (table.vector("from")?, table.vector("to")?);
+    if from == to && !round {
+        return Err(table.error_at("to", "the cylinder has no length"));
+    }
+    Ok(Primitive::Rod {
+        from,
+        to,
+        radius: table.number("radius")?,
+        round,
+    }
+    .into())
+}
+
+/// Reads a mesh file, and brings the mesh to its size and place.
+fn read_mesh<const D: usize>(
+    shape: &Reader<'_>,
+    (files, limits): FileAccess<'_>,
+) -> Result<Shape<D>, SceneError> {
+    if D == 2 {
+        return Err(shape
             .error_at_key("mesh", "meshes are for 3D only")
             .hint("this scene has dimension = 2; a polygon can have any outline"));
     }
-    let keys = table.opt_table("mesh");
+    let keys = shape.opt_table("mesh");
     let path = match &keys {
         Some(keys) => keys.text("file")?,
-        None => table.text("mesh")?,
+        None => shape.text("mesh")?,
     };
     let bytes = files
         .bytes(path, false, limits.memory / 8)
         .map_err(|reason| {
-            let message = format!("cannot read \"{}\": {reason}", super::shorten(path));
+            let message = format!("cannot read \"{}\": {reason}", shorten(path));
             let error = match &keys {
                 Some(keys) => keys.error_at("file", message),
-                None => table.error_at("mesh", message),
+                None => shape.error_at("mesh", message),
             };
             error.hint("meshes are found from the scene's folder")
         })?;
@@ -287,19 +210,14 @@ fn read_mesh<const D: usize>(
     let Some(keys) = keys else {
         return Ok(mesh);
     };
-    // z up is turned to y up, then the mesh is brought to its size and place.
-    let turn = if keys.text("up")? == "z" {
-        [-90.0, 0.0, 0.0]
-    } else {
-        [0.0; 3]
-    };
-    let turned = mesh.moved(Motion::new(
+    let turn = keys.choice("up", &[("y", [0.0; 3]), ("z", [-90.0, 0.0, 0.0])])?;
+    let upright = mesh.transformed(Transform::new(
         [1.0; D],
         turn.map(f64::to_radians),
         [0.0; D],
         [0.0; D],
     ));
-    let bounds = turned.bounds();
+    let bounds = upright.bounds();
     let longest = (0..D).map(|i| bounds.side(i)).fold(0.0, f64::max);
     let factor = keys.opt_number("size").map_or(1.0, |size| size / longest);
     let middle = bounds.middle();
@@ -307,11 +225,11 @@ fn read_mesh<const D: usize>(
         core::array::from_fn(|i| center[i] - middle[i])
     });
     let about = if keys.has("center") { middle } else { [0.0; D] };
-    Ok(turned.moved(Motion::new([factor; D], [0.0; 3], about, by)))
+    Ok(upright.transformed(Transform::new([factor; D], [0.0; 3], about, by)))
 }
 
-/// `scale`, `rotate` and `translate`, in this order.
-fn read_motion<const D: usize>(
+/// Applies `scale`, `rotate` and `translate`, in this order.
+fn read_transform<const D: usize>(
     table: &Reader<'_>,
     shape: Shape<D>,
 ) -> Result<Shape<D>, SceneError> {
@@ -346,10 +264,10 @@ fn read_motion<const D: usize>(
         .unwrap_or_else(|| shape.bounds().middle());
     let by = table.opt_vector("translate").unwrap_or([0.0; D]);
     let turn = turn.map(f64::to_radians);
-    Ok(shape.moved(Motion::new(scale, turn, about, by)))
+    Ok(shape.transformed(Transform::new(scale, turn, about, by)))
 }
 
-/// `copies` in rows along the axes.
+/// Repeats the shape in rows along the axes, as `copies` says.
 fn read_copies<const D: usize>(
     table: &Reader<'_>,
     shape: Shape<D>,
@@ -363,11 +281,11 @@ fn read_copies<const D: usize>(
         return Err(copies.error_at("count", "copies are counted by whole numbers above 0"));
     }
     let total: f64 = count.iter().product();
-    if total * shape.parts() as f64 > MOST_PARTS as f64 {
+    if total * shape.part_count() as f64 > LARGEST_PART_COUNT as f64 {
         return Err(copies
             .error_at("count", format!("these are {total} copies"))
             .hint(format!(
-                "at most {MOST_PARTS} parts are possible in a shape"
+                "at most {LARGEST_PART_COUNT} parts are possible in a shape"
             )));
     }
     if let Some(i) = (0..D).find(|&i| count[i] > 1.0 && step[i] == 0.0) {
@@ -376,15 +294,14 @@ fn read_copies<const D: usize>(
             format!("copies along {} need a step there", AXES[i]),
         ));
     }
-    let mut all = Vec::new();
-    for number in 0..total as usize {
+    let all = (0..total as usize).map(|number| {
         let mut rest = number;
         let by = core::array::from_fn(|i| {
             let place = rest % count[i] as usize;
             rest /= count[i] as usize;
             place as f64 * step[i]
         });
-        all.push(shape.clone().moved(Motion::shift(by)));
-    }
-    Ok(Shape::Union(all))
+        shape.clone().transformed(Transform::translation(by))
+    });
+    Ok(Shape::Union(all.collect()))
 }

@@ -42,7 +42,7 @@ impl<const D: usize> Falls<D> {
                 min: domain.min,
                 max: domain.max,
             },
-            None => Bounds::around(&bodies),
+            None => Bounds::around(bodies.iter().copied()),
         };
         let longest = (0..D).map(|i| room.side(i)).fold(0.0, f64::max);
         let thrown = plan.bodies.iter().map(Body::speed).fold(0.0, f64::max);

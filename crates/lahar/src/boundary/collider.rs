@@ -1,8 +1,8 @@
-//! Solid bodies that stand or move as they are told: shape, contact and motion, as plain data.
+//! Primitive bodies that stand or move as they are told: shape, contact and motion, as plain data.
 
 use super::Contact;
 use crate::error::SetupError;
-use crate::geometry::{Solid, rotation};
+use crate::geometry::{Primitive, rotation};
 use crate::math::{Matrix, Vector};
 
 /// A body that stops the material and is not moved by it.
@@ -10,11 +10,12 @@ use crate::math::{Matrix, Vector};
 pub struct Collider<const D: usize> {
     /// Its name, for messages and for what is measured on it.
     pub name: String,
-    /// What it is made of, at rest: all that is in any of them.
-    pub solids: Vec<Solid<D>>,
+    /// Its shape at rest: the union of these primitives, which [`Shape::primitives`](crate::geometry::Shape::primitives)
+    /// makes of a shape.
+    pub primitives: Vec<Primitive<D>>,
     /// What it does to the material.
     pub contact: Contact,
-    /// The point that it turns about, in the coordinates of `solids` \[m\].
+    /// The point that it turns about, in the coordinates of `primitives` \[m\].
     pub center: [f64; D],
     /// How it moves.
     pub motion: Motion<D>,
@@ -25,7 +26,7 @@ pub struct Collider<const D: usize> {
 pub enum Motion<const D: usize> {
     /// Not at all.
     Still,
-    /// From where its solids are at time 0, always on.
+    /// From where its primitives are at time 0, always on.
     Steady {
         /// Of its centre \[m/s\].
         velocity: [f64; D],
@@ -98,12 +99,12 @@ impl<const D: usize> Motion<D> {
 }
 
 impl<const D: usize> Collider<D> {
-    /// A collider that stands still, and turns about its first solid's middle if it is moved.
-    pub fn still(name: impl Into<String>, solids: Vec<Solid<D>>, contact: Contact) -> Self {
+    /// A collider that stands still, and turns about the middle of its first primitive if it is moved.
+    pub fn still(name: impl Into<String>, primitives: Vec<Primitive<D>>, contact: Contact) -> Self {
         Self {
             name: name.into(),
-            center: solids.first().map_or([0.0; D], Solid::center),
-            solids,
+            center: primitives.first().map_or([0.0; D], Primitive::center),
+            primitives,
             contact,
             motion: Motion::Still,
         }
@@ -111,13 +112,13 @@ impl<const D: usize> Collider<D> {
 
     /// Where it is at `time` \[s\].
     pub fn at(&self, time: f64) -> Placed<D> {
-        let still = |solid: &Solid<D>| (solid.clone(), Vector([0.0; D]));
+        let still = |primitive: &Primitive<D>| (primitive.clone(), Vector([0.0; D]));
         let mut placed = Placed {
             rest: self.center,
             moved: Vector([0.0; D]),
             rotation: Matrix::identity(1.0),
             turns: false,
-            solids: self.solids.iter().map(still).collect(),
+            primitives: self.primitives.iter().map(still).collect(),
             period: [None; D],
         };
         placed.put(self, time);
@@ -139,9 +140,9 @@ impl<const D: usize> Collider<D> {
             .map(|reach| reach * reach)
             .sum::<f64>()
             .sqrt();
-        let own = self.solids.iter().map(|solid| {
-            let arm = (Vector(solid.center()) - Vector(self.center)).norm();
-            solid.reach().map_or(f64::INFINITY, |reach| arm + reach)
+        let own = self.primitives.iter().map(|primitive| {
+            let arm = (Vector(primitive.center()) - Vector(self.center)).norm();
+            primitive.reach().map_or(f64::INFINITY, |reach| arm + reach)
         });
         speed + rate * own.fold(0.0, f64::max).min(in_box)
     }
@@ -151,10 +152,10 @@ impl<const D: usize> Collider<D> {
         let place = |x: [f64; D]| core::array::from_fn(|i| (x[i] - origin[i]) / unit);
         Self {
             name: self.name.clone(),
-            solids: self
-                .solids
+            primitives: self
+                .primitives
                 .iter()
-                .map(|solid| solid.in_units(unit, origin))
+                .map(|primitive| primitive.in_units(unit, origin))
                 .collect(),
             contact: self.contact,
             center: place(self.center),
@@ -189,19 +190,19 @@ impl<const D: usize> Collider<D> {
             })
         };
         let finite = |x: &[f64]| x.iter().all(|x| x.is_finite());
-        if self.solids.is_empty() {
+        if self.primitives.is_empty() {
             return error("shape", "has no part".into());
         }
-        for solid in &self.solids {
-            if let Solid::Polygon { points } = solid
+        for primitive in &self.primitives {
+            if let Primitive::Polygon { points } = primitive
                 && (points.len() < 3 || !points.iter().all(|x| finite(x)))
             {
                 return error("shape", "must have three corners or more".into());
             }
-            let thin = solid
+            let thin = primitive
                 .thickness()
                 .is_some_and(|t| !(t > 0.0 && t.is_finite()));
-            if thin || !finite(&solid.center()) {
+            if thin || !finite(&primitive.center()) {
                 return error("shape", "must have a place and extent".into());
             }
         }
@@ -242,7 +243,7 @@ pub struct Placed<const D: usize> {
     rotation: Matrix<f64, D>,
     turns: bool,
     /// Each at rest, with how far its middle has moved.
-    solids: Vec<(Solid<D>, Vector<f64, D>)>,
+    primitives: Vec<(Primitive<D>, Vector<f64, D>)>,
     /// Lengths of the axes that are periodic.
     pub(crate) period: [Option<f64>; D],
 }
@@ -258,8 +259,8 @@ impl<const D: usize> Placed<D> {
         } else {
             Matrix::identity(1.0)
         };
-        for (solid, its_move) in &mut self.solids {
-            let arm = Vector(solid.center()) - Vector(self.rest);
+        for (primitive, its_move) in &mut self.primitives {
+            let arm = Vector(primitive.center()) - Vector(self.rest);
             *its_move = moved + (self.rotation * arm - arm);
         }
     }
@@ -274,16 +275,16 @@ impl<const D: usize> Placed<D> {
     /// [`Self::distance`] of the point at `x` from `base`.
     pub(crate) fn distance_from(&self, base: [f64; D], x: Vector<f64, D>) -> (f64, Vector<f64, D>) {
         let mut nearest = (f64::INFINITY, Vector([0.0; D]));
-        for (solid, moved) in &self.solids {
-            let mut y = (Vector(base) - Vector(solid.center())) + (x - *moved);
-            if solid.reach().is_some() {
+        for (primitive, moved) in &self.primitives {
+            let mut y = (Vector(base) - Vector(primitive.center())) + (x - *moved);
+            if primitive.reach().is_some() {
                 y = self.wrapped(y);
             }
             let found = if self.turns {
-                let (distance, out) = solid.distance(self.rotation.transpose() * y);
+                let (distance, out) = primitive.distance_from_center(self.rotation.transpose() * y);
                 (distance, self.rotation * out)
             } else {
-                solid.distance(y)
+                primitive.distance_from_center(y)
             };
             if found.0 < nearest.0 {
                 nearest = found;
@@ -297,18 +298,18 @@ impl<const D: usize> Placed<D> {
         Vector(self.rest) + self.moved
     }
 
-    /// Its solids as they are now.
-    pub fn solids(&self) -> Vec<Solid<D>> {
+    /// Its primitives as they are now.
+    pub fn primitives(&self) -> Vec<Primitive<D>> {
         let turned = |v: [f64; D]| (self.rotation * Vector(v)).0;
-        self.solids
+        self.primitives
             .iter()
-            .map(|(solid, moved)| {
-                let now = Vector(solid.center()) + *moved;
+            .map(|(primitive, moved)| {
+                let now = Vector(primitive.center()) + *moved;
                 let shift = |x: [f64; D]| {
-                    let arm = Vector(x) - Vector(solid.center());
+                    let arm = Vector(x) - Vector(primitive.center());
                     (now + self.rotation * arm).0
                 };
-                solid.mapped(shift, turned, 1.0)
+                primitive.mapped(shift, turned, 1.0)
             })
             .collect()
     }

@@ -11,6 +11,8 @@ pub(crate) mod walls;
 pub use collider::{Collider, Keyframe, Motion, Placed};
 pub use impulse::BoundaryImpulse;
 
+use crate::geometry::Bounds;
+
 /// The box that holds a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Domain<const D: usize> {
@@ -24,21 +26,12 @@ pub struct Domain<const D: usize> {
     pub style: WallStyle,
 }
 
-/// A box along the axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Corners<const D: usize> {
-    /// Lower corner \[m\].
-    pub min: [f64; D],
-    /// Upper corner \[m\].
-    pub max: [f64; D],
-}
-
 /// A box that particles slow down to stay in: at the end of a substep, no velocity is left that
 /// would carry its particle out within `time`. One that is out already is brought back in that time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cushion<const D: usize> {
     /// The box.
-    pub inside: Corners<D>,
+    pub inside: Bounds<D>,
     /// How far ahead it looks \[s\].
     pub time: f64,
 }

@@ -10,7 +10,7 @@
 
 use super::collider::{Collider, Motion};
 use super::walls::Walls;
-use crate::geometry::Solid;
+use crate::geometry::Primitive;
 use crate::math::Vector;
 
 /// A face is on a side if it is no farther from it than this \[cells\].
@@ -42,15 +42,15 @@ impl Side {
 }
 
 impl<const D: usize> Collider<D> {
-    /// With what of its solids stands on a side of the domain going on beyond that; lengths in cells. A face that
+    /// With what of its primitives stands on a side of the domain going on beyond that; lengths in cells. A face that
     /// leaves its side, since the collider moves, is left where it is.
     pub(crate) fn rooted(mut self, walls: &Walls<D>) -> Self {
         for side in walls
             .ends()
             .filter(|side| self.motion.stays_on(side.axis, &self.center))
         {
-            for solid in &mut self.solids {
-                solid.root(side);
+            for primitive in &mut self.primitives {
+                primitive.root(side);
             }
         }
         self
@@ -71,7 +71,7 @@ impl<const D: usize> Motion<D> {
     }
 }
 
-impl<const D: usize> Solid<D> {
+impl<const D: usize> Primitive<D> {
     /// Moves a flat face that looks out of `side`, from it or from beyond it, out so far that it is not the nearest
     /// one for any point inside of the domain.
     fn root(&mut self, side: Side) {

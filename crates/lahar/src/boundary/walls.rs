@@ -2,8 +2,9 @@
 
 use super::impulse::{SIDES, Taken};
 use super::rooted::Side;
-use super::{Contact, Corners, Cushion, Domain, Sides, WallStyle};
+use super::{Contact, Cushion, Domain, Sides, WallStyle};
 use crate::error::SetupError;
+use crate::geometry::Bounds;
 use crate::math::{Scalar, Vector};
 use crate::setup::Setup;
 
@@ -189,7 +190,7 @@ impl<const D: usize> Walls<D> {
     /// If a box is empty, or the cushion's time is not positive.
     fn keep(
         &mut self,
-        clamp: Option<&Corners<D>>,
+        clamp: Option<&Bounds<D>>,
         cushion: Option<&Cushion<D>>,
         origin: [f64; D],
         dx: f64,
@@ -325,7 +326,7 @@ impl<const D: usize> Walls<D> {
     }
 }
 
-fn check_corners<const D: usize>(key: &str, corners: &Corners<D>) -> Result<(), SetupError> {
+fn check_corners<const D: usize>(key: &str, corners: &Bounds<D>) -> Result<(), SetupError> {
     let empty = |axis: usize| {
         let side = corners.max[axis] - corners.min[axis];
         !(side > 0.0 && side.is_finite())

@@ -1,49 +1,64 @@
-//! Closed surfaces of triangles: which points are inside.
+//! Closed surfaces of triangles, and the points inside them.
 //!
-//! A ray along +x is followed through all triangles that it meets. Triangles are found by a grid of
-//! cells on the y-z plane; whether a ray meets one is decided edge by edge, and an edge decides the
-//! same for both of its triangles. So a ray never slips through a seam nor counts a corner twice.
+//! A point is inside if a ray from it along +x crosses the surface an odd number of times. A grid of cells
+//! on the y-z plane finds the triangles that the ray may meet. Each crossing is decided edge by edge, and
+//! an edge decides the same for both of its triangles, so that no ray slips through a seam or counts a
+//! corner twice.
 
 use std::collections::BTreeMap;
 
 /// A closed surface of triangles.
+///
+/// ```
+/// use lahar::geometry::Mesh;
+///
+/// let vertices = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+/// let faces = vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+/// let tetrahedron = Mesh::new(vertices, faces)?;
+/// assert!(tetrahedron.contains([0.2, 0.2, 0.2]) && !tetrahedron.contains([0.5, 0.5, 0.5]));
+/// # Ok::<(), lahar::geometry::MeshError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     vertices: Vec<[f64; 3]>,
     faces: Vec<[u32; 3]>,
     min: [f64; 3],
     max: [f64; 3],
-    /// Whether every edge is passed once in each direction: then parts may overlap.
+    /// True if the faces pass every edge as often in one direction as in the other. Parts of such a mesh
+    /// may overlap.
     oriented: bool,
-    /// Cells of the grid along y and z.
+    /// Numbers of cells of the grid along y and z.
     size: [usize; 2],
-    /// Where each cell's faces begin in `in_cell`.
+    /// The index in `in_cell` at which each cell's faces begin.
     starts: Vec<u32>,
+    /// The faces over each cell, cell by cell.
     in_cell: Vec<u32>,
 }
 
-/// Why triangles are no solid body.
+/// The reason why triangles do not enclose a body.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MeshError {
-    /// There are none.
+    /// There is no triangle.
     Empty,
-    /// Edges that belong to an odd number of triangles: their number, and the first face with one.
+    /// Some edges belong to an odd number of triangles, so the surface has a hole.
     Open {
-        /// Such edges.
+        /// The number of such edges.
         edges: usize,
-        /// The first face that has one, from 0.
+        /// The first face with such an edge, counted from 0.
         face: usize,
     },
 }
 
-/// Part of a mesh's volume that may be missing from a count before parts of it are said to overlap.
+/// If the volume by formula and the volume by counting differ by more than this part, the mesh overlaps
+/// itself.
 const OVERLAP: f64 = 0.03;
 
-/// Faces in a cell of the grid on average.
-const FACES_A_CELL: usize = 2;
+/// Faces per cell of the grid on average.
+const FACES_PER_CELL: usize = 2;
 
 impl Mesh {
-    /// Takes in triangles: corners by their numbers. Vertices at the same place count as one.
+    /// Makes a mesh of `vertices` \[m\] and triangles, each given by the numbers of its three corners.
+    /// Vertices at the same place are joined.
     ///
     /// # Errors
     /// If there is no triangle, or the surface is not closed.
@@ -63,7 +78,7 @@ impl Mesh {
                 max[i] = max[i].max(vertices[corner as usize][i]);
             }
         }
-        let edge = ((faces.len() / FACES_A_CELL) as f64).sqrt() as usize;
+        let edge = ((faces.len() / FACES_PER_CELL) as f64).sqrt() as usize;
         let mut mesh = Self {
             vertices,
             faces,
@@ -78,26 +93,27 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// Lower and upper corner of the box around it \[m\].
+    /// Returns the lower and upper corner of the box around the mesh \[m\].
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
         (self.min, self.max)
     }
 
-    /// Its corners \[m\].
+    /// Iterates over the vertices \[m\].
     pub(super) fn vertices(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         self.vertices.iter().copied()
     }
 
-    /// Number of triangles.
+    /// Returns the number of triangles.
     pub fn faces(&self) -> usize {
         self.faces.len()
     }
 
+    /// Returns the corners of a face \[m\].
     fn corners(&self, face: u32) -> [[f64; 3]; 3] {
         self.faces[face as usize].map(|corner| self.vertices[corner as usize])
     }
 
-    /// The cell of a place on the y-z plane.
+    /// Returns the cell of the grid that contains a point of the y-z plane.
     fn cell(&self, y: f64, z: f64) -> [usize; 2] {
         let along = |x: f64, axis: usize| {
             let part = (x - self.min[axis]) / (self.max[axis] - self.min[axis]);
@@ -106,6 +122,7 @@ impl Mesh {
         [along(y, 1), along(z, 2)]
     }
 
+    /// Lists the faces over each cell of the grid.
     fn fill_grid(&mut self) {
         let mut pairs: Vec<(u32, u32)> = Vec::new();
         for face in 0..self.faces.len() as u32 {
@@ -140,7 +157,7 @@ impl Mesh {
         self.in_cell = pairs.into_iter().map(|(_, face)| face).collect();
     }
 
-    /// Whether `p` \[m\] is inside.
+    /// Returns true if `p` \[m\] is inside.
     pub fn contains(&self, p: [f64; 3]) -> bool {
         if !(0..3).all(|i| self.min[i] <= p[i] && p[i] <= self.max[i]) {
             return false;
@@ -161,8 +178,9 @@ impl Mesh {
         }
     }
 
-    /// Σ of the tetrahedra between the faces and a corner \[m³\], if faces are turned alike and the
-    /// sum means something.
+    /// Returns the volume \[m³\]: the sum of the tetrahedra between the faces and a corner of the bounds.
+    /// `None` if that sum is not the volume: if the faces are not oriented alike, or the mesh falls into
+    /// several pieces or overlaps itself.
     pub(super) fn exact_volume(&self) -> Option<f64> {
         if !self.oriented {
             return None;
@@ -180,13 +198,13 @@ impl Mesh {
                 (a[0] * cross[0] + a[1] * cross[1] + a[2] * cross[2]) / 6.0
             })
             .sum();
-        // What overlaps is counted twice by the sum and once by `contains`.
+        // The sum counts overlapping parts twice, `contains` counts them once.
         let exact = sum.abs();
         let agrees = (exact - self.counted_volume()).abs() < OVERLAP * exact;
         (self.is_one_piece() && agrees).then_some(exact)
     }
 
-    /// Volume by a lattice's points \[m³\], to a percent or so.
+    /// Returns the volume counted on a lattice of points \[m³\], to about a percent.
     fn counted_volume(&self) -> f64 {
         const N: usize = 40;
         let side: [f64; 3] = core::array::from_fn(|i| self.max[i] - self.min[i]);
@@ -201,7 +219,7 @@ impl Mesh {
         side.iter().product::<f64>() * inside as f64 / (N * N * N) as f64
     }
 
-    /// Whether all faces hang together.
+    /// Returns true if all faces are connected by shared vertices.
     fn is_one_piece(&self) -> bool {
         let mut root: Vec<u32> = (0..self.vertices.len() as u32).collect();
         fn find(root: &mut [u32], mut at: u32) -> u32 {
@@ -225,14 +243,14 @@ impl Mesh {
     }
 }
 
-/// Vertices at the same place made one, and faces without area by their corners left out.
+/// Joins vertices at the same place and leaves out faces of which two corners are the same.
 fn welded(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     let mut numbers: BTreeMap<[u64; 3], u32> = BTreeMap::new();
     let mut kept = Vec::new();
     let new: Vec<u32> = vertices
         .into_iter()
         .map(|v| {
-            // + 0.0 makes one zero of both.
+            // Adding 0.0 turns −0.0 into 0.0.
             *numbers
                 .entry(v.map(|x| (x + 0.0).to_bits()))
                 .or_insert_with(|| {
@@ -249,9 +267,9 @@ fn welded(vertices: Vec<[f64; 3]>, faces: Vec<[u32; 3]>) -> (Vec<[f64; 3]>, Vec<
     (kept, faces)
 }
 
-/// Whether faces are turned alike; an error if an edge has an odd number of faces.
+/// Returns true if the faces are oriented alike; an error if an edge has an odd number of faces.
 fn check_closed(faces: &[[u32; 3]]) -> Result<bool, MeshError> {
-    // Edges with their lower corner first: (from low to high, from high to low, a face).
+    // (lower corner, higher corner, whether the face passes from low to high, face).
     let mut edges: Vec<(u32, u32, bool, u32)> = Vec::with_capacity(3 * faces.len());
     for (index, face) in faces.iter().enumerate() {
         for i in 0..3 {
@@ -277,11 +295,11 @@ fn check_closed(faces: &[[u32; 3]]) -> Result<bool, MeshError> {
     Ok(oriented)
 }
 
-/// Whether the ray from `p` along +x meets the triangle: ±1 by the side it comes from.
+/// Returns ±1, by the side that it comes from, if the ray from `p` along +x crosses the triangle.
 fn crossing(corners: [[f64; 3]; 3], p: [f64; 3]) -> Option<i32> {
     let mut inside = false;
     for i in 0..3 {
-        // The edge from its lower end, the same for both of its triangles.
+        // The edge starts at its lower end, whichever of its triangles asks.
         let (a, b) = (corners[i], corners[(i + 1) % 3]);
         let (a, b) = if (a[2], a[1]) < (b[2], b[1]) {
             (a, b)
@@ -313,7 +331,7 @@ fn crossing(corners: [[f64; 3]; 3], p: [f64; 3]) -> Option<i32> {
 mod tests {
     use super::*;
 
-    /// A unit cube's faces, turned outwards.
+    /// The vertices and outward faces of a cube.
     fn cube(low: [f64; 3], side: f64) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
         let vertices = (0..8_u32)
             .map(|n| core::array::from_fn(|i| low[i] + side * f64::from(n >> i & 1)))
@@ -334,12 +352,12 @@ mod tests {
     }
 
     #[test]
-    fn a_cube_is_a_cube() {
+    fn a_cube_contains_its_inside() {
         let (vertices, faces) = cube([0.0; 3], 1.0);
         let mesh = Mesh::new(vertices, faces).unwrap();
         assert!(mesh.oriented);
         assert!((mesh.exact_volume().unwrap() - 1.0).abs() < 1e-15);
-        // Through edges, corners and diagonals of faces too.
+        // Rays pass through edges, corners and diagonals of faces too.
         for i in 0..9 {
             for j in 0..9 {
                 for k in 0..9 {
@@ -366,7 +384,7 @@ mod tests {
     }
 
     #[test]
-    fn faces_turned_any_way_will_do() {
+    fn faces_may_have_any_orientation() {
         let (vertices, mut faces) = cube([0.0; 3], 1.0);
         for face in faces.iter_mut().step_by(3) {
             face.swap(0, 1);
@@ -393,9 +411,9 @@ mod tests {
         assert_eq!(Mesh::new(Vec::new(), Vec::new()), Err(MeshError::Empty));
     }
 
-    /// A ball of many thin triangles: the part of random points inside is its volume.
+    /// The part of random points that are inside a ball of many thin triangles is its volume.
     #[test]
-    fn a_round_mesh_holds_its_volume() {
+    fn the_volume_of_a_round_mesh_is_counted() {
         let (rings, sectors) = (60_u32, 90_u32);
         let mut vertices = Vec::new();
         for ring in 0..=rings {

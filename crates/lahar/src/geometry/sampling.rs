@@ -1,25 +1,38 @@
-//! Where the particles of a body are at the start. The same seed gives the same positions, on every
+//! Positions of the particles of a body at the start. The same seed gives the same positions on every
 //! machine.
 
 use super::Region;
 
-/// How positions are chosen.
+/// The rule by which positions are chosen.
+///
+/// ```
+/// use lahar::geometry::sampling::{Random, Sampling, sample};
+/// use lahar::geometry::{Bounds, Region, Shape};
+///
+/// let block = Shape::Box { min: [0.0, 0.0], max: [1.0, 0.5] };
+/// let region = Region::new(block, Bounds::EVERYTHING);
+/// let positions = sample(&region, 0.1, None, Sampling::Lattice, &mut Random::new(0, 0));
+/// assert_eq!(positions.len(), 50);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sampling {
-    /// The centres of a lattice's cells, the lattice fitted to the shape's bounds.
+    /// The centers of the cells of a lattice, which is fitted to the bounds of the shape.
     Lattice,
-    /// One anywhere in each of these cells.
+    /// One random point in each cell of that lattice.
     #[default]
     Jittered,
-    /// Anywhere.
+    /// Random points.
     Random,
-    /// Anywhere, but never close to another: dart throwing with a distance that shrinks until
-    /// the number is reached.
+    /// Random points that keep a distance from each other (dart throwing). The distance shrinks until the
+    /// number of points is reached.
     Poisson,
 }
 
 impl Sampling {
-    /// As scenes spell it.
+    /// All rules.
+    pub const ALL: [Self; 4] = [Self::Lattice, Self::Jittered, Self::Random, Self::Poisson];
+
+    /// Returns the word for the rule in scene files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Lattice => "lattice",
@@ -31,18 +44,26 @@ impl Sampling {
 }
 
 /// A stream of random numbers (SplitMix64).
+///
+/// ```
+/// use lahar::geometry::sampling::Random;
+///
+/// let number = Random::new(7, 0).unit();
+/// assert!((0.0..1.0).contains(&number));
+/// assert_eq!(number, Random::new(7, 0).unit());
+/// ```
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
 impl Random {
-    /// Stream number `stream` of `seed`; streams have nothing to do with each other.
+    /// Starts stream number `stream` of `seed`. Different streams are independent of each other.
     pub fn new(seed: u64, stream: u64) -> Self {
         let mut random = Self(seed ^ 0x6c61_6861_7200_0000);
         let first = random.next();
         Self(first ^ stream.wrapping_mul(0xd134_2543_de82_ef95))
     }
 
-    /// The next 64 bits.
+    /// Returns the next 64 bits.
     fn next(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -51,13 +72,14 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// A number in 0 .. 1.
+    /// Returns a number from 0, included, to 1, excluded.
     pub fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 * (1.0 / (1_u64 << 53) as f64)
     }
 }
 
-/// The number that random and Poisson sampling place, and about the number that the others do.
+/// Returns the number of positions that [`sample`] chooses for a mean distance of `spacing` \[m\]: exact
+/// before rounding for random and Poisson sampling, an estimate for lattices.
 pub fn expected_count<const D: usize>(region: &Region<D>, spacing: f64, sampling: Sampling) -> f64 {
     let cell: f64 = match sampling {
         Sampling::Random | Sampling::Poisson => spacing.powi(D as i32),
@@ -72,8 +94,8 @@ pub fn expected_count<const D: usize>(region: &Region<D>, spacing: f64, sampling
     region.volume() / cell
 }
 
-/// Positions \[m\] in `region`, `spacing` \[m\] apart on average; for random and Poisson sampling
-/// `count` of them if it is given.
+/// Chooses positions \[m\] in `region` that are `spacing` \[m\] apart on average. Random and Poisson
+/// sampling choose `count` positions instead, if it is given.
 pub fn sample<const D: usize>(
     region: &Region<D>,
     spacing: f64,
@@ -94,11 +116,12 @@ pub fn sample<const D: usize>(
     }
 }
 
-/// Number of lattice cells along each axis: the bounds hold a whole number of them.
+/// Returns the number of lattice cells along each axis. A whole number of them fits the bounds.
 pub fn lattice_size<const D: usize>(region: &Region<D>, spacing: f64) -> [usize; D] {
     core::array::from_fn(|i| ((region.bounds().side(i) / spacing).round() as usize).max(1))
 }
 
+/// Places one position per lattice cell, at `place()` of the cell's side along each axis.
 fn lattice<const D: usize>(
     region: &Region<D>,
     spacing: f64,
@@ -115,7 +138,7 @@ fn lattice<const D: usize>(
         if region.contains(&p) {
             positions.push(p);
         }
-        // Odometer, the first axis fastest.
+        // Count up to the next cell, the first axis fastest.
         let Some(axis) = (0..D).find(|&i| cell[i] + 1 < size[i]) else {
             return positions;
         };
@@ -124,9 +147,10 @@ fn lattice<const D: usize>(
     }
 }
 
-/// Draws before a shape that fills next to nothing of its bounds is given up.
+/// Draws after which [`anywhere`] gives up on a shape that fills almost nothing of its bounds.
 const DRAWS: usize = 1_000_000;
 
+/// Draws a random point of the region; `None` if it is not found.
 fn anywhere<const D: usize>(region: &Region<D>, random: &mut Random) -> Option<[f64; D]> {
     let bounds = region.bounds();
     (0..DRAWS)
@@ -134,13 +158,14 @@ fn anywhere<const D: usize>(region: &Region<D>, random: &mut Random) -> Option<[
         .find(|p| region.contains(p))
 }
 
-/// Dart throwing: the distance starts near the closest that random packing reaches, and shrinks
-/// whenever darts keep missing.
+/// Throws darts that must keep a distance from those before. The distance starts near the closest random
+/// packing and shrinks after many misses in a row.
 fn poisson<const D: usize>(region: &Region<D>, count: usize, random: &mut Random) -> Vec<[f64; D]> {
-    /// Part of the mean spacing that the distance starts at.
+    /// The first distance, as a part of the mean spacing.
     const START: f64 = 0.85;
-    /// Misses in a row before it shrinks, and to what part.
+    /// Misses in a row after which the distance shrinks.
     const PATIENCE: usize = 60;
+    /// The factor by which it shrinks.
     const SHRINK: f64 = 0.98;
     let bounds = region.bounds();
     let mut distance = START * (region.volume() / count.max(1) as f64).powf(1.0 / D as f64);
@@ -152,7 +177,7 @@ fn poisson<const D: usize>(region: &Region<D>, count: usize, random: &mut Random
         })
     };
     let flat = |cell: [usize; D]| cell.iter().zip(size).rev().fold(0, |at, (c, n)| at * n + c);
-    // Heads and links of a list of positions a cell; the cells are no smaller than the distance.
+    // The positions of each cell are a linked list. The cells are no smaller than the distance.
     const NONE: u32 = u32::MAX;
     let mut heads = vec![NONE; size.iter().product()];
     let mut next: Vec<u32> = Vec::with_capacity(count);
@@ -163,8 +188,8 @@ fn poisson<const D: usize>(region: &Region<D>, count: usize, random: &mut Random
             return positions;
         };
         let cell = cell_of(&p);
-        let close = (0..3_usize.pow(D as u32)).any(|neighbour| {
-            let mut rest = neighbour;
+        let close = (0..3_usize.pow(D as u32)).any(|neighbor| {
+            let mut rest = neighbor;
             let mut other = [0; D];
             for i in 0..D {
                 let at = cell[i] + rest % 3;
@@ -204,14 +229,7 @@ fn poisson<const D: usize>(region: &Region<D>, count: usize, random: &mut Random
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Bounds, Shape};
-
-    const ALL: [Sampling; 4] = [
-        Sampling::Lattice,
-        Sampling::Jittered,
-        Sampling::Random,
-        Sampling::Poisson,
-    ];
+    use crate::geometry::{Bounds, Primitive, Shape};
 
     fn square() -> Region<2> {
         Region::new(
@@ -224,8 +242,8 @@ mod tests {
     }
 
     #[test]
-    fn counts_are_right_and_inside() {
-        for sampling in ALL {
+    fn counts_are_as_expected_and_positions_inside() {
+        for sampling in Sampling::ALL {
             let positions = sample(&square(), 0.01, None, sampling, &mut Random::new(1, 0));
             assert_eq!(positions.len(), 5000, "{sampling:?}");
             assert!(
@@ -233,10 +251,10 @@ mod tests {
                 "{sampling:?}"
             );
             let ball = Region::new(
-                Shape::Ball {
+                Shape::from(Primitive::Ball {
                     center: [0.0; 3],
                     radius: 0.5,
-                },
+                }),
                 Bounds::EVERYTHING,
             );
             let positions = sample(&ball, 0.05, None, sampling, &mut Random::new(1, 0));
@@ -252,7 +270,7 @@ mod tests {
 
     #[test]
     fn same_seed_same_positions() {
-        for sampling in ALL {
+        for sampling in Sampling::ALL {
             let draw = |seed, stream| {
                 sample(
                     &square(),

@@ -1,8 +1,9 @@
-//! Volumes of shapes that are cut off at a box.
+//! Volumes of balls and half-spaces cut off at a box.
 
-use super::{Bounds, Shape};
+use super::Bounds;
 use core::f64::consts::{FRAC_PI_2, PI};
 
+/// Returns the volume of a ball \[m³; m² in 2D\].
 pub(super) fn ball_volume<const D: usize>(radius: f64) -> f64 {
     if D == 2 {
         PI * radius * radius
@@ -11,11 +12,11 @@ pub(super) fn ball_volume<const D: usize>(radius: f64) -> f64 {
     }
 }
 
-/// Intervals of Simpson's rule along an axis: errors below 1e-6 of the ball with the kinks that
-/// faces of the box make.
+/// Intervals of Simpson's rule along an axis. The faces of the box make kinks; with so many intervals
+/// the error stays below 1e-6 of the ball.
 const INTERVALS: usize = 2048;
 
-/// Volume of the ball in the box, by slices along the last axis.
+/// Returns the volume of the part of a ball in a box, integrated over slices along the last axis.
 pub(super) fn clipped_ball<const D: usize>(
     center: &[f64; D],
     radius: f64,
@@ -52,6 +53,7 @@ pub(super) fn clipped_ball<const D: usize>(
     )
 }
 
+/// Returns the area of the part of a disc in a rectangle.
 fn clipped_disc(
     center: [f64; 2],
     radius: f64,
@@ -64,7 +66,8 @@ fn clipped_disc(
     })
 }
 
-/// ∫ f(√(r² − (y−c)²)) dy over `low..high`, in y = c + r sin θ, where the ends of a ball are smooth.
+/// Returns ∫ f(√(r² − (y−c)²)) dy over `low..high` by Simpson's rule, with y = c + r sin θ: in θ the ends
+/// of a ball are smooth.
 fn simpson(
     center: f64,
     radius: f64,
@@ -100,8 +103,9 @@ fn simpson(
     sum * step / 3.0
 }
 
-/// Volume of a half-space in a box: Σ over corners v of (−1)^|v| (c − n·v)₊ᵈ / (d! Π n), over the d
-/// axes that the normal leans to, the box mapped to the unit box and the normal made positive.
+/// Returns the volume of the part of a half-space in a box: Σ over the corners v of
+/// (−1)^|v| (c − n·v)₊ᵈ / (d! Π n). The box is mapped to the unit box, the normal is made positive, and d
+/// counts the axes along which the normal has a component.
 pub(super) fn half_space_volume<const D: usize>(
     point: &[f64; D],
     normal: &[f64; D],
@@ -142,8 +146,8 @@ pub(super) fn half_space_volume<const D: usize>(
     clip.volume() * (sum / below).clamp(0.0, 1.0)
 }
 
-/// The smallest box around a half-space in a box: around the corners inside and the points where
-/// edges cross the plane.
+/// Returns the smallest box around the part of a half-space in a box: around the corners inside, and the
+/// points where edges cross the plane.
 pub(super) fn half_space_bounds<const D: usize>(
     point: &[f64; D],
     normal: &[f64; D],
@@ -177,75 +181,4 @@ pub(super) fn half_space_bounds<const D: usize>(
         }
     }
     bounds
-}
-
-/// Sutherland and Hodgman: parts that a concave polygon falls into stay joined by edges along the
-/// box, which have no area.
-pub(super) fn clip_polygon<const D: usize>(points: &[[f64; D]], clip: &Bounds<D>) -> Vec<[f64; D]> {
-    let mut points = points.to_vec();
-    for (axis, sign, at) in [
-        (0, 1.0, clip.min[0]),
-        (0, -1.0, clip.max[0]),
-        (1, 1.0, clip.min[1]),
-        (1, -1.0, clip.max[1]),
-    ] {
-        if !at.is_finite() {
-            continue;
-        }
-        let depth = |p: &[f64; D]| sign * (p[axis] - at);
-        let mut kept = Vec::new();
-        for i in 0..points.len() {
-            let (a, b) = (points[i], points[(i + 1) % points.len()]);
-            let (da, db) = (depth(&a), depth(&b));
-            if da >= 0.0 {
-                kept.push(a);
-            }
-            if (da >= 0.0) != (db >= 0.0) {
-                kept.push(core::array::from_fn(|k| {
-                    a[k] + (b[k] - a[k]) * da / (da - db)
-                }));
-            }
-        }
-        points = kept;
-    }
-    points
-}
-
-/// Area of a polygon \[m²\], positive if counter-clockwise.
-pub fn area<const D: usize>(points: &[[f64; D]]) -> f64 {
-    let Some(origin) = points.first() else {
-        return 0.0;
-    };
-    (0..points.len())
-        .map(|i| {
-            let (a, b) = (points[i], points[(i + 1) % points.len()]);
-            0.5 * ((a[0] - origin[0]) * (b[1] - origin[1])
-                - (b[0] - origin[0]) * (a[1] - origin[1]))
-        })
-        .sum()
-}
-
-/// Points along an axis of a box at which shapes without a formula are looked at.
-const LATTICE_2D: usize = 768;
-const LATTICE_3D: usize = 80;
-
-/// Volume of the part of `shape` in `bounds`: the part of a lattice's points that lie in it. Off by
-/// some 0.1 % for a smooth shape.
-pub(super) fn counted<const D: usize>(shape: &Shape<D>, bounds: &Bounds<D>) -> f64 {
-    let volume = bounds.volume();
-    if !(volume > 0.0 && volume.is_finite()) {
-        return 0.0;
-    }
-    let n = if D == 2 { LATTICE_2D } else { LATTICE_3D };
-    let place = |axis: usize, step: usize| {
-        bounds.min[axis] + bounds.side(axis) * (step as f64 + 0.5) / n as f64
-    };
-    let total = n.pow(D as u32);
-    let inside = (0..total)
-        .filter(|number| {
-            let p = core::array::from_fn(|axis| place(axis, number / n.pow(axis as u32) % n));
-            shape.contains(&p)
-        })
-        .count();
-    volume * inside as f64 / total as f64
 }

@@ -10,8 +10,9 @@ pub use isa::Isa;
 pub use particle_batch::{Deformation, ParticleBatch, StartingValues};
 pub use probe::{Gauge, Plate, Probe, ProbeSample, ProbeSamples};
 
-use crate::boundary::{Collider, Corners, Cushion, Domain};
+use crate::boundary::{Collider, Cushion, Domain};
 use crate::forces::Force;
+use crate::geometry::Bounds;
 use crate::material::Material;
 
 /// Everything but the particles. SI units; in 2D per metre of depth.
@@ -23,7 +24,7 @@ pub struct Setup<const D: usize> {
     pub domain: Option<Domain<D>>,
     /// Particles that leave this box are put back on its sides; their velocities stay. Walls on their
     /// planes do that besides.
-    pub clamp: Option<Corners<D>>,
+    pub clamp: Option<Bounds<D>>,
     /// Slows particles down before they reach the walls.
     pub cushion: Option<Cushion<D>>,
     /// Bodies that the material cannot enter; they act one after the other, after the walls.

@@ -4,10 +4,11 @@
 use crate::fixtures::{CONTACTS, ball, brawl, colliders_of_all_kinds, one_of_each};
 
 use crate::walled::{SEPARATE, SLIP, both, field, fluid, jelly};
+use lahar::geometry::Primitive;
 use lahar::particles::Field;
 use lahar::{
     Collider, Contact, Deformation, Domain, Instance, Motion, ParticleBatch, Setup, Simulate,
-    Simulation, Solid, TimeStep, Transfer, WallStyle,
+    Simulation, TimeStep, Transfer, WallStyle,
 };
 use lahar_lab::method::random::Random;
 
@@ -31,7 +32,7 @@ fn tank(dx: f64, height: f64, angle: f64, floor: Contact) -> (Setup<2>, Particle
     };
     setup.colliders = vec![Collider::still(
         "floor",
-        vec![Solid::HalfSpace {
+        vec![Primitive::HalfSpace {
             point: [0.5, height],
             normal,
         }],
@@ -243,7 +244,7 @@ where
     let point = [0.013; D];
     setup.colliders = vec![Collider::still(
         "floor",
-        vec![Solid::HalfSpace { point, normal }],
+        vec![Primitive::HalfSpace { point, normal }],
         Contact::Separate { friction },
     )];
     let floor = setup.colliders[0].at(0.0);
@@ -299,7 +300,7 @@ fn slide(angle: f64, friction: f64) -> [f64; 2] {
         gravity: [0.0, -G],
         colliders: vec![Collider::still(
             "slope",
-            vec![Solid::HalfSpace {
+            vec![Primitive::HalfSpace {
                 point: [0.0, 0.0],
                 normal: [angle.sin(), angle.cos()],
             }],
@@ -375,7 +376,7 @@ fn a_fast_piston_passes_no_particle() {
         },
         ..Collider::still(
             "piston",
-            vec![Solid::Box {
+            vec![Primitive::Box {
                 center: [0.0, -3.0],
                 half: [1.0, 0.11],
                 axes: [[1.0, 0.0], [0.0, 1.0]],
@@ -396,7 +397,7 @@ fn a_fast_piston_passes_no_particle() {
 
 /// Runs fluid along the floor against an obstacle for 0.25 s. Returns the particles' positions and the impulse on the
 /// obstacle.
-fn stream<const D: usize>(solid: Solid<D>, motion: Motion<D>) -> (Vec<[f64; D]>, [f64; 3])
+fn stream<const D: usize>(obstacle: Primitive<D>, motion: Motion<D>) -> (Vec<[f64; D]>, [f64; 3])
 where
     f32: Instance<D>,
 {
@@ -413,7 +414,7 @@ where
     };
     setup.colliders = vec![Collider {
         motion,
-        ..Collider::still("obstacle", vec![solid], SEPARATE)
+        ..Collider::still("obstacle", vec![obstacle], SEPARATE)
     }];
     let cells = [12, 6, 16];
     let mut batch = ParticleBatch::default();
@@ -443,7 +444,7 @@ where
 #[test]
 fn an_obstacle_that_stands_on_the_floor_has_no_face_there() {
     let below = -5.0 / 32.0;
-    let block = |bottom: f64| Solid::Box {
+    let block = |bottom: f64| Primitive::Box {
         center: [0.5625, 0.5 * (0.25 + bottom)],
         half: [0.0625, 0.5 * (0.25 - bottom)],
         axes: [[1.0, 0.0], [0.0, 1.0]],
@@ -457,7 +458,7 @@ fn an_obstacle_that_stands_on_the_floor_has_no_face_there() {
         assert_eq!(stream(block(0.0), motion.clone()), lower, "{motion:?}");
         assert_eq!(stream(block(-0.5 / 32.0), motion), lower);
     }
-    let wedge = |bottom: f64| Solid::Polygon {
+    let wedge = |bottom: f64| Primitive::Polygon {
         points: vec![
             [0.5, bottom],
             [0.6875, bottom],
@@ -466,14 +467,14 @@ fn an_obstacle_that_stands_on_the_floor_has_no_face_there() {
             [0.5, 0.0],
         ],
     };
-    let on_floor = Solid::Polygon {
+    let on_floor = Primitive::Polygon {
         points: vec![[0.6875, 0.0], [0.625, 0.25], [0.5, 0.0]],
     };
     assert_eq!(
         stream(on_floor, Motion::Still),
         stream(wedge(10.0 * below), Motion::Still)
     );
-    let column = |bottom: f64| Solid::Rod {
+    let column = |bottom: f64| Primitive::Rod {
         from: [0.5625, bottom, 0.25],
         to: [0.5625, 0.5, 0.25],
         radius: 0.0625,

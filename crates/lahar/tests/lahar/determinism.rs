@@ -87,8 +87,8 @@ fn move_by<const D: usize>(collider: &mut Collider<D>, by: f64) {
         x[D - 1] -= by;
     };
     shift(&mut collider.center);
-    for solid in &mut collider.solids {
-        *solid = solid.mapped(
+    for primitive in &mut collider.primitives {
+        *primitive = primitive.mapped(
             |mut x| {
                 shift(&mut x);
                 x

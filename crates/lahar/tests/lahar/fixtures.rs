@@ -1,13 +1,14 @@
 //! Scenes and helpers that several tests share.
 
+use lahar::geometry::Primitive;
 use lahar::material::{
     Corotated, Dust, Eos, Fluid, HardeningFrom, NeoHookean, PLASTIC_JACOBIAN, Snow, ViscousStress,
     VolumeCorrection, VolumeRule, lame,
 };
 use lahar::particles::{Data, Field, Snapshot};
 use lahar::{
-    Collider, Contact, Corners, Cushion, Domain, Keyframe, Material, Model, Motion, ParticleBatch,
-    Setup, Sides, Simulate, Simulation, Solid, TimeStep, WallStyle,
+    Bounds, Collider, Contact, Cushion, Domain, Keyframe, Material, Model, Motion, ParticleBatch,
+    Setup, Sides, Simulate, Simulation, TimeStep, WallStyle,
 };
 use lahar_lab::method::random::Random;
 
@@ -160,12 +161,12 @@ pub(crate) fn brawl_with_all_options<const D: usize>(
             Model::Corotated(_) | Model::NeoHookean(_)
         );
     }
-    setup.clamp = Some(Corners {
+    setup.clamp = Some(Bounds {
         min: [0.14 * size; D],
         max: [0.86 * size; D],
     });
     setup.cushion = Some(Cushion {
-        inside: Corners {
+        inside: Bounds {
             min: [0.2 * size; D],
             max: [0.8 * size; D],
         },
@@ -185,7 +186,7 @@ pub(crate) fn colliders_of_all_kinds<const D: usize>(
     let along = |i: usize| core::array::from_fn(|j| f64::from(i == j));
     let axes: [[f64; D]; D] = core::array::from_fn(along);
     let slope: [f64; D] = core::array::from_fn(|i| [0.6, 0.8, 0.0][i]);
-    let paddle = Solid::Box {
+    let paddle = Primitive::Box {
         center: place(0.5, 0.3),
         half: core::array::from_fn(|i| size * [0.3, 0.07, 0.2][i]),
         axes,
@@ -195,11 +196,11 @@ pub(crate) fn colliders_of_all_kinds<const D: usize>(
         position: place(x, y),
         turn: [0.0, 0.0, turn],
     };
-    let ball = Solid::Ball {
+    let ball = Primitive::Ball {
         center: place(0.3, 0.7),
         radius: 0.13 * size,
     };
-    let rod = |round| Solid::Rod {
+    let rod = |round| Primitive::Rod {
         from: place(0.62, 0.62),
         to: place(0.85, 0.7),
         radius: 0.08 * size,
@@ -208,7 +209,7 @@ pub(crate) fn colliders_of_all_kinds<const D: usize>(
     vec![
         Collider::still(
             "slope",
-            vec![Solid::HalfSpace {
+            vec![Primitive::HalfSpace {
                 point: place(0.0, 0.4),
                 normal: slope,
             }],
@@ -232,7 +233,7 @@ pub(crate) fn colliders_of_all_kinds<const D: usize>(
         Collider::still("rods", vec![rod(true), rod(false)], contact),
         Collider::still(
             "wedge",
-            vec![Solid::Polygon {
+            vec![Primitive::Polygon {
                 points: vec![place(0.25, 0.0), place(0.5, 0.1), place(0.6, 0.0)],
             }],
             contact,

@@ -3,7 +3,7 @@
 use crate::fixtures::{self, brawl};
 use lahar::reference::Reference;
 use lahar::{
-    Command, Contact, Corners, Cushion, Domain, Field, Instance, ParticleBatch, Pointer,
+    Bounds, Command, Contact, Cushion, Domain, Field, Instance, ParticleBatch, Pointer,
     PointerAction, Setup, Sides, Simulate, Simulation, TimeStep, Transfer, WallStyle,
 };
 
@@ -130,7 +130,7 @@ fn grains_are_pushed_as_published_3d() {
 fn a_cushion_acts_after_the_pointer() {
     let setup = Setup {
         cushion: Some(Cushion {
-            inside: Corners {
+            inside: Bounds {
                 min: [3.0; 2],
                 max: [60.0; 2],
             },
