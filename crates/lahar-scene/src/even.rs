@@ -75,7 +75,7 @@ fn even<K: BSpline, const D: usize>(
 mod tests {
     use super::*;
     use lahar::geometry::sampling::{Random, Sampling, sample};
-    use lahar::geometry::{Bounds, Shape};
+    use lahar::geometry::{Bounds, Primitive};
 
     /// The standard deviation of how full the nodes well inside are.
     fn unevenness(region: &Region<2>, position: &[[f64; 2]], volume: &[f64], dx: f64) -> f64 {
@@ -107,11 +107,11 @@ mod tests {
     #[cfg(feature = "threads")]
     #[test]
     fn threads_do_not_change_the_bits() {
-        let shape = Shape::Ball {
+        let shape = Primitive::Ball {
             center: [0.3, 0.1, 0.7],
             radius: 1.0,
         };
-        let region = Region::new(shape, Bounds::EVERYTHING);
+        let region = Region::new(shape.into(), Bounds::EVERYTHING);
         for sampling in [Sampling::Jittered, Sampling::Random] {
             let position = sample(&region, 0.04, None, sampling, &mut Random::new(2, 0));
             let on = |threads: usize| {
@@ -129,10 +129,11 @@ mod tests {
     fn scattered_particles_fill_the_grid_evenly() {
         let dx = 0.1;
         let ball = Region::new(
-            Shape::Ball {
+            Primitive::Ball {
                 center: [0.03, -0.4],
                 radius: 1.07,
-            },
+            }
+            .into(),
             Bounds::EVERYTHING,
         );
         for (sampling, most) in [(Sampling::Jittered, 0.5), (Sampling::Poisson, 0.5)] {

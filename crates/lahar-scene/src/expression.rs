@@ -549,7 +549,7 @@ impl<'a> Parser<'a> {
     }
 
     fn unknown(&self, name: &str, place: Range<usize>, called: bool) -> ExpressionError {
-        let shown = crate::scene::shorten(name);
+        let shown = crate::text::shorten(name);
         let known: Vec<&str> = if called {
             functions().collect()
         } else {

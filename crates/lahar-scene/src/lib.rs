@@ -16,6 +16,7 @@ mod parallel;
 pub mod particle_list;
 pub mod ply;
 pub mod scene;
+mod text;
 
 /// The Rust block of this crate's README, compiled and run by the tests.
 #[cfg(doctest)]

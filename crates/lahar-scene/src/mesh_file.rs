@@ -1,7 +1,7 @@
 //! Triangle meshes from STL (text and binary) and OBJ files. Every error knows its place.
 
 use crate::error::SceneError;
-use crate::particle_list::Lines;
+use crate::text::{Lines, not_text, shorten};
 use lahar::geometry::{Mesh, MeshError};
 
 /// Corners, and faces by the numbers of theirs.
@@ -31,8 +31,7 @@ pub(crate) fn parse_mesh(bytes: &[u8], name: &str) -> Result<Mesh, SceneError> {
 }
 
 fn text<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, SceneError> {
-    core::str::from_utf8(bytes)
-        .map_err(|error| crate::scene::not_text(name, bytes, error.valid_up_to()))
+    core::str::from_utf8(bytes).map_err(|error| not_text(name, bytes, error.valid_up_to()))
 }
 
 /// Bytes of a binary STL file before its triangles, and of each of them.
@@ -95,7 +94,7 @@ fn parse_vertex(words: &[&str], whole: &str, name: &str) -> Result<[f64; 3], Sce
                 continue;
             }
             Ok(number) => format!("a corner cannot be at {number}"),
-            Err(_) => format!("\"{}\" is not a number", crate::scene::shorten(word)),
+            Err(_) => format!("\"{}\" is not a number", shorten(word)),
         };
         return Err(at_word(word, whole, name, message));
     }
@@ -135,10 +134,7 @@ fn parse_text_stl(text: &str, name: &str) -> Result<Triangles, SceneError> {
                     word,
                     text,
                     name,
-                    format!(
-                        "\"{}\" is not expected in an STL file",
-                        crate::scene::shorten(word)
-                    ),
+                    format!("\"{}\" is not expected in an STL file", shorten(word)),
                 ));
             }
         }
@@ -200,7 +196,7 @@ fn corner(word: &str, vertices: usize, text: &str, name: &str) -> Result<u32, Sc
         .filter(|index| *index < vertices)
         .and_then(|index| u32::try_from(index).ok())
         .ok_or_else(|| {
-            let message = format!("there is no vertex \"{}\"", crate::scene::shorten(word));
+            let message = format!("there is no vertex \"{}\"", shorten(word));
             at_word(word, text, name, message).hint(format!("there are {vertices} so far"))
         })
 }

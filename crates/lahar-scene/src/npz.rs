@@ -83,7 +83,7 @@ pub fn read_limited(path: impl AsRef<Path>, limit: u64) -> Result<Vec<NpzArray>,
         what,
     };
     let file = File::open(path).map_err(|error| fail(None, error.to_string()))?;
-    read_archive(BufReader::new(file), limit).map_err(|(array, what)| fail(array, what))
+    read_from(BufReader::new(file), limit).map_err(|(array, what)| fail(array, what))
 }
 
 /// The one array of an `.npy` file.
@@ -102,14 +102,6 @@ pub fn read_npy(path: impl AsRef<Path>) -> Result<NpzArray, NpzError> {
     read_array(&mut BufReader::new(file), String::new(), &mut left).map_err(fail)
 }
 
-/// [`read_limited`] from anything seekable.
-///
-/// # Errors
-/// What is wrong.
-pub(crate) fn read_from<R: Read + Seek>(reader: R, limit: u64) -> Result<Vec<NpzArray>, String> {
-    read_archive(reader, limit).map_err(|(_, what)| what)
-}
-
 /// [`read_npy`] from anything.
 ///
 /// # Errors
@@ -119,8 +111,11 @@ pub(crate) fn read_array_from(mut reader: impl Read) -> Result<NpzArray, String>
     read_array(&mut reader, String::new(), &mut left)
 }
 
-/// [`read_limited`] from anything seekable; errors are the array and what is wrong.
-fn read_archive<R: Read + Seek>(
+/// [`read_limited`] from a reader.
+///
+/// # Errors
+/// The array, and what is wrong with it.
+pub(crate) fn read_from<R: Read + Seek>(
     reader: R,
     limit: u64,
 ) -> Result<Vec<NpzArray>, (Option<String>, String)> {
@@ -640,7 +635,7 @@ mod tests {
     }
 
     fn read_bytes(bytes: &[u8]) -> Result<Vec<NpzArray>, Failure> {
-        read_archive(Cursor::new(bytes), 1 << 20)
+        read_from(Cursor::new(bytes), 1 << 20)
     }
 
     fn array(name: &str, shape: &[usize], data: Data) -> NpzArray {

@@ -4,11 +4,10 @@
 mod arrays;
 
 #[cfg(feature = "npz")]
-pub(crate) use arrays::from_arrays;
-#[cfg(feature = "npz")]
-pub use arrays::read_npz;
+pub(crate) use arrays::{from_arrays, read_npz};
 
 use crate::error::{SceneError, nearest};
+use crate::text::{AXES, Lines, shorten};
 
 /// Columns of a list, one entry a particle; what the file does not have is empty.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -49,8 +48,6 @@ impl Column {
         matches!(self, Self::Volume | Self::Mass | Self::Jacobian)
     }
 }
-
-pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Every column that a file may have, by its name.
 pub(crate) fn known_columns<const D: usize>() -> Vec<(String, Column)> {
@@ -141,10 +138,7 @@ fn parse_header<const D: usize>(
     for (at, field) in fields(start, header) {
         let error = |message: String| SceneError::at(name, text, at, at + field.len(), message);
         let Some((_, column)) = known.iter().find(|(known, _)| known == field) else {
-            let error = error(format!(
-                "unknown column \"{}\"",
-                crate::scene::shorten(field)
-            ));
+            let error = error(format!("unknown column \"{}\"", shorten(field)));
             if field.parse::<f64>().is_ok() {
                 return Err(error.hint(format!(
                     "the first line must name the columns: {}, ..",
@@ -182,10 +176,7 @@ fn parse_header<const D: usize>(
 pub(crate) fn parse_number(field: &str, column: Column) -> Result<f64, String> {
     match field.parse::<f64>() {
         Ok(number) => check_number(number, column),
-        Err(_) => Err(format!(
-            "\"{}\" is not a number",
-            crate::scene::shorten(field)
-        )),
+        Err(_) => Err(format!("\"{}\" is not a number", shorten(field))),
     }
 }
 
@@ -246,24 +237,6 @@ pub(crate) fn check_columns<const D: usize>(columns: &[Column]) -> Result<(), St
         return Err("columns J and F11, F12, .. say the same; give one".to_owned());
     }
     Ok(())
-}
-
-/// Lines with the byte they start at, without their ends.
-pub(crate) struct Lines<'a> {
-    pub(crate) text: &'a str,
-    pub(crate) at: usize,
-}
-
-impl<'a> Iterator for Lines<'a> {
-    type Item = (usize, &'a str);
-
-    fn next(&mut self) -> Option<Self::Item> {
-        let rest = self.text.get(self.at..).filter(|rest| !rest.is_empty())?;
-        let start = self.at;
-        let line = rest.split('\n').next().unwrap_or(rest);
-        self.at += line.len() + 1;
-        Some((start, line.strip_suffix('\r').unwrap_or(line)))
-    }
 }
 
 /// Fields of a line with the byte they start at, trimmed.

@@ -5,8 +5,9 @@
 
 use crate::error::SceneError;
 use crate::particle_list::{
-    Column, Lines, ParticleList, check_columns, check_number, known_columns, parse_number,
+    Column, ParticleList, check_columns, check_number, known_columns, parse_number,
 };
+use crate::text::{Lines, not_text};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Format {
@@ -167,8 +168,8 @@ fn read_text<const D: usize>(
     (before, vertex, columns, given): Wanted<'_>,
     list: &mut ParticleList<D>,
 ) -> Result<(), SceneError> {
-    let text = core::str::from_utf8(bytes)
-        .map_err(|error| crate::scene::not_text(name, bytes, error.valid_up_to()))?;
+    let text =
+        core::str::from_utf8(bytes).map_err(|error| not_text(name, bytes, error.valid_up_to()))?;
     let mut lines = Lines {
         text,
         at: header.body,
@@ -294,7 +295,7 @@ fn parse_header(bytes: &[u8], name: &str) -> Result<Header, SceneError> {
             .position(|byte| *byte == b'\n')
             .map_or(start.len() - end, |at| at + 1);
     let text = core::str::from_utf8(&start[..end])
-        .map_err(|error| crate::scene::not_text(name, start, error.valid_up_to()))?;
+        .map_err(|error| not_text(name, start, error.valid_up_to()))?;
     let mut format = None;
     let mut elements: Vec<Element> = Vec::new();
     for (at, line) in (Lines { text, at: 0 }).skip(1) {

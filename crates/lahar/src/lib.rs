@@ -24,8 +24,7 @@ mod step;
 mod transfer;
 
 pub use boundary::{
-    BoundaryImpulse, Collider, Contact, Cushion, Domain, Keyframe, Motion, Sides,
-    WallStyle,
+    BoundaryImpulse, Collider, Contact, Cushion, Domain, Keyframe, Motion, Sides, WallStyle,
 };
 pub use error::{DtLimit, Failure, SetupError};
 pub use forces::{AccelerationField, Force, Pull};

@@ -827,10 +827,7 @@ fn check_batch<const D: usize>(
             format!("{deformed} values for {count} particles"),
         );
     }
-    let positive = [
-        ("volume", &batch.volume),
-        ("mass", &batch.mass),
-    ];
+    let positive = [("volume", &batch.volume), ("mass", &batch.mass)];
     for (key, values) in positive {
         if let Some(i) = values.iter().position(|&x| !(x > 0.0 && x.is_finite())) {
             return setup_error(

@@ -2,22 +2,26 @@
 
 use super::ParticleList;
 use crate::error::SceneError;
-use crate::npz::{NpzArray, read_limited};
-use std::path::Path;
+use crate::npz::{NpzArray, read_from};
+use std::io::{BufReader, Read, Seek};
 
-/// Reads an `.npz` file with the arrays of a run's frames: `position`, and optionally `velocity`,
-/// `volume0` or `volume`, `mass`, `J`, `deformation_gradient` (which then counts, not `J`), `affine`;
-/// others are passed over. No more than `limit` bytes are taken in.
+/// Reads an `.npz` archive with the arrays of a run's frames: `position`, and optionally `velocity`,
+/// `volume0` or `volume`, `mass`, `J`, `deformation_gradient` (which replaces `J`), `affine`; other arrays are
+/// skipped. The arrays may take `limit` bytes together. `name` is the file's, for messages.
 ///
 /// # Errors
 /// The array that is missing, of another shape, or has a value that particles cannot have.
-pub fn read_npz<const D: usize>(path: &Path, limit: u64) -> Result<ParticleList<D>, SceneError> {
-    let name = path.display().to_string();
-    let fail = |message: String| SceneError::of_file(&*name, message);
-    let arrays = read_limited(path, limit).map_err(|error| match &error.array {
-        Some(array) => fail(format!("array \"{array}\": {}", error.what)),
-        None => fail(error.what.clone()),
-    })?;
+pub(crate) fn read_npz<const D: usize>(
+    name: &str,
+    content: impl Read + Seek,
+    limit: u64,
+) -> Result<ParticleList<D>, SceneError> {
+    let fail = |message: String| SceneError::of_file(name, message);
+    let arrays =
+        read_from(BufReader::new(content), limit).map_err(|(array, what)| match array {
+            Some(array) => fail(format!("array \"{array}\": {what}")),
+            None => fail(what),
+        })?;
     from_arrays(&arrays).map_err(fail)
 }
 

@@ -178,7 +178,7 @@ impl Check<'_> {
         }
         let error = self.sources.error(
             entry.key_span,
-            format!("unknown key \"{}\"", super::document::shorten(&entry.key)),
+            format!("unknown key \"{}\"", crate::text::shorten(&entry.key)),
         );
         let available = || {
             section.keys().filter(|key| {
@@ -440,7 +440,7 @@ impl Check<'_> {
             span,
             format!(
                 "\"{}\" is no value of \"{name}\"",
-                super::document::shorten(text)
+                crate::text::shorten(text)
             ),
         );
         Err(match nearest(text, words.iter().copied()) {

@@ -1,9 +1,9 @@
 //! Colliders, as scenes write them.
 
-use super::Limits;
+use super::contact::contact_with_friction;
 use super::document::{Sources, Span, Value, from_json};
-use super::files::{Files, Place};
-use super::plan::contact_with_friction;
+use super::files::{EmbeddedFiles, Files};
+use super::limits::Limits;
 use super::read::Reader;
 use super::shapes::read_shape;
 use crate::error::SceneError;
@@ -68,7 +68,7 @@ impl ColliderInfo {
 pub(super) fn read_colliders<const D: usize>(
     scene: &Reader<'_>,
     dx: f64,
-    files: (&Files<'_>, &Limits),
+    files: &Files<'_>,
     warnings: &mut Vec<String>,
 ) -> Result<Vec<Collider<D>>, SceneError> {
     let mut colliders: Vec<Collider<D>> = Vec::new();
@@ -100,7 +100,7 @@ pub(super) fn read_colliders<const D: usize>(
 fn read_collider<const D: usize>(
     index: usize,
     table: &Reader<'_>,
-    files: (&Files<'_>, &Limits),
+    files: &Files<'_>,
 ) -> Result<Collider<D>, SceneError> {
     let name = table
         .opt_text("name")
@@ -198,7 +198,8 @@ pub fn colliders_of(resolved: &serde_json::Value) -> Vec<ColliderInfo> {
         return Vec::new();
     };
     let scene = Reader::new(&sources, &root, Span::default());
-    let files = (&Files::new(Place::Embedded(&[])), &Limits::default());
+    let limits = Limits::default();
+    let files = &Files::new(&EmbeddedFiles(&[]), &limits);
     let read = if scene.opt_integer("dimension") == Some(3) {
         read_colliders::<3>(&scene, 0.0, files, &mut Vec::new()).map(|all| infos(&scene, &all))
     } else {

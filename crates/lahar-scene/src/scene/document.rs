@@ -2,6 +2,7 @@
 //! later can be pointed at; and what `--set` does to the tree.
 
 use crate::error::{SceneError, nearest};
+use crate::text::shorten;
 use toml::de::{DeTable, DeValue};
 
 /// Texts that values come from: the scene first, then the overrides.
@@ -104,20 +105,6 @@ impl Value {
             Self::Integer(number) => Some(*number as f64),
             _ => None,
         }
-    }
-}
-
-/// At most forty characters of a text, on one line.
-pub(crate) fn shorten(text: &str) -> String {
-    let clean: String = text
-        .chars()
-        .take(40)
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
-    if text.chars().count() > 40 {
-        clean + "..."
-    } else {
-        clean
     }
 }
 

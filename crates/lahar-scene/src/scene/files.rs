@@ -1,33 +1,227 @@
-//! Files that a scene is, or names. Only plain files are read, and no more of them than is allowed:
-//! a device or a pipe would never end.
+//! The scene file, and the files that it names.
+//!
+//! [`SceneFiles`] says where named files are: beside the scene, in the program, in the copies that a run has
+//! kept, or in memory, where there is no file system. Only plain files are read, and no more of them than
+//! the limit: a device or a pipe would never end.
 
+use super::limits::Limits;
 use crate::builtin;
 use crate::error::{SceneError, nearest};
+use crate::text::not_text;
 use serde::{Deserialize, Serialize};
 use std::cell::RefCell;
 use std::fs::File;
-use std::io::Read;
+use std::io::{Cursor, Read, Seek};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// The copy of a file that a scene names.
+/// The copy that a run keeps of a file named by its scene.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct KeptFile {
-    /// As the scene names it.
+    /// The name as the scene writes it.
     pub name: String,
-    /// Whether it was looked for where the command was given, not beside the scene.
+    /// True if the file was named on the command line, and so was found from the working folder.
     pub here: bool,
-    /// The copy's name in `checkpoints/files/`.
+    /// Name of the copy in `checkpoints/files/`.
     pub copy: String,
-    /// Its length.
+    /// Length of the copy \[bytes\].
     pub bytes: u64,
     /// CRC-32 of its bytes.
     pub crc32: u32,
 }
 
-/// Largest scene file \[bytes\]: beyond it, it is something else.
+/// Finds the files that a scene names: meshes and particle lists.
+///
+/// ```
+/// use lahar_scene::scene::{FileSource, Limits, Scene, SceneFiles};
+///
+/// /// Two particles, without a file system.
+/// struct InMemory;
+///
+/// impl SceneFiles for InMemory {
+///     fn find(&self, name: &str, _: bool) -> Result<FileSource, String> {
+///         match name {
+///             "two.csv" => Ok(FileSource::Bytes(b"x,y,volume\n0.5,0.5,1e-3\n0.6,0.5,1e-3\n"[..].into())),
+///             _ => Err("there is no such file".to_owned()),
+///         }
+///     }
+/// }
+///
+/// let text = r#"
+///     dx = 0.1
+///     materials.jelly = { preset = "jelly" }
+///     bodies = [{ material = "jelly", particles = "two.csv" }]
+/// "#;
+/// let scene = Scene::parse_with(text, "two.toml", &[], &Limits::default(), &InMemory)?;
+/// assert_eq!(scene.expected_particles(), 2.0);
+/// # Ok::<(), lahar_scene::error::SceneError>(())
+/// ```
+pub trait SceneFiles {
+    /// Finds the file that the scene calls `name`. `here` is true if the name comes from the command line,
+    /// and so is relative to the working folder and not to the scene's.
+    ///
+    /// # Errors
+    /// The reason why there is no such file, as part of a sentence: "there is no such file".
+    fn find(&self, name: &str, here: bool) -> Result<FileSource, String>;
+}
+
+/// The place of a file's content.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FileSource {
+    /// A file of the file system. It need not exist.
+    Path(PathBuf),
+    /// The content itself.
+    Bytes(Arc<[u8]>),
+}
+
+/// Files of the file system, found from a folder: the scene's.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FolderFiles(pub PathBuf);
+
+impl SceneFiles for FolderFiles {
+    fn find(&self, name: &str, here: bool) -> Result<FileSource, String> {
+        Ok(FileSource::Path(if here {
+            PathBuf::from(name)
+        } else {
+            self.0.join(name)
+        }))
+    }
+}
+
+/// The files of a built-in scene, by name.
+pub(super) struct EmbeddedFiles(pub(super) &'static [(&'static str, &'static str)]);
+
+impl SceneFiles for EmbeddedFiles {
+    fn find(&self, name: &str, here: bool) -> Result<FileSource, String> {
+        if here {
+            return Ok(FileSource::Path(PathBuf::from(name)));
+        }
+        match self.0.iter().find(|(file, _)| *file == name) {
+            Some((_, text)) => Ok(FileSource::Bytes(text.as_bytes().into())),
+            None => Err("built-in scenes have no such file".to_owned()),
+        }
+    }
+}
+
+/// The copies that a run has kept in a folder.
+pub(super) struct KeptFiles<'a> {
+    pub(super) files: &'a [KeptFile],
+    pub(super) folder: &'a Path,
+}
+
+impl SceneFiles for KeptFiles<'_> {
+    fn find(&self, name: &str, here: bool) -> Result<FileSource, String> {
+        let mut files = self.files.iter();
+        match files.find(|file| file.name == name && file.here == here) {
+            Some(file) => Ok(FileSource::Path(self.folder.join(&file.copy))),
+            None => Err("the run has kept no copy of it".to_owned()),
+        }
+    }
+}
+
+/// A file that a scene was made from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneFile {
+    /// The name as the scene writes it.
+    pub name: String,
+    /// True if the file was named on the command line, and so was found from the working folder.
+    pub here: bool,
+    source: FileSource,
+}
+
+impl SceneFile {
+    /// Opens the file to read its bytes.
+    ///
+    /// # Errors
+    /// If it can no longer be opened.
+    pub fn open(&self) -> std::io::Result<Box<dyn Read>> {
+        Ok(match &self.source {
+            FileSource::Path(path) => Box::new(File::open(path)?),
+            FileSource::Bytes(bytes) => Box::new(Cursor::new(Arc::clone(bytes))),
+        })
+    }
+}
+
+/// The content of an open file, from which archives read here and there.
+pub(crate) trait ReadSeek: Read + Seek {}
+
+impl<T: Read + Seek> ReadSeek for T {}
+
+/// An open file, with the name that messages give it.
+pub(crate) struct OpenFile {
+    pub(crate) name: String,
+    pub(crate) content: Box<dyn ReadSeek>,
+}
+
+/// The files of a scene that is being read: where they are, how large they may be, and which were asked for.
+pub(crate) struct Files<'a> {
+    source: &'a dyn SceneFiles,
+    limits: &'a Limits,
+    used: RefCell<Vec<SceneFile>>,
+}
+
+impl<'a> Files<'a> {
+    pub(crate) fn new(source: &'a dyn SceneFiles, limits: &'a Limits) -> Self {
+        Self {
+            source,
+            limits,
+            used: RefCell::default(),
+        }
+    }
+
+    pub(crate) fn limits(&self) -> &'a Limits {
+        self.limits
+    }
+
+    /// Returns the files that were asked for.
+    pub(crate) fn used(&self) -> Vec<SceneFile> {
+        self.used.borrow().clone()
+    }
+
+    fn find(&self, name: &str, here: bool) -> Result<FileSource, String> {
+        let source = self.source.find(name, here)?;
+        let file = SceneFile {
+            name: name.to_owned(),
+            here,
+            source: source.clone(),
+        };
+        let mut used = self.used.borrow_mut();
+        if !used.contains(&file) {
+            used.push(file);
+        }
+        Ok(source)
+    }
+
+    /// Returns the content of a file of at most `limit` bytes, or the reason why there is none.
+    pub(crate) fn bytes(&self, name: &str, here: bool, limit: u64) -> Result<Vec<u8>, String> {
+        match self.find(name, here)? {
+            FileSource::Path(path) => read_plain(&path, limit),
+            FileSource::Bytes(bytes) => Ok(bytes.to_vec()),
+        }
+    }
+
+    /// Opens a file, or returns the reason why there is none.
+    pub(crate) fn open(&self, name: &str, here: bool) -> Result<OpenFile, String> {
+        Ok(match self.find(name, here)? {
+            FileSource::Path(path) => {
+                check_plain(&path)?;
+                OpenFile {
+                    name: path.display().to_string(),
+                    content: Box::new(File::open(&path).map_err(|error| io_words(&error))?),
+                }
+            }
+            FileSource::Bytes(bytes) => OpenFile {
+                name: name.to_owned(),
+                content: Box::new(Cursor::new(bytes)),
+            },
+        })
+    }
+}
+
+/// Largest scene file \[bytes\]. A larger one is not a scene.
 const LARGEST_SCENE: u64 = 16 << 20;
 
-/// The text of a scene file, or why there is none.
+/// Reads the text of a scene file.
 pub(crate) fn read_text(path: &str) -> Result<String, SceneError> {
     let fail = |message: &str| SceneError::of_file(path, message);
     if path.is_empty() {
@@ -64,123 +258,7 @@ pub(crate) fn read_text(path: &str) -> Result<String, SceneError> {
     })
 }
 
-/// An error at the first byte that is no text, number `at`.
-pub(crate) fn not_text(path: &str, bytes: &[u8], at: usize) -> SceneError {
-    /// Bytes shown after it.
-    const AFTER: usize = 100;
-    let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(at + AFTER)]);
-    let message = format!("this is not a text file: byte {at} is no UTF-8");
-    SceneError::at(path, &shown, at, at + 1, message)
-}
-
-/// Where the files that a scene names are.
-pub(crate) enum Place<'a> {
-    /// Beside the scene's own.
-    Folder(&'a Path),
-    /// In the program.
-    Embedded(&'static [(&'static str, &'static str)]),
-    /// Copies that a run has made, in this folder.
-    Kept(&'a [KeptFile], &'a Path),
-}
-
-/// The files that a scene names, and which of them it has asked for.
-pub(crate) struct Files<'a> {
-    place: Place<'a>,
-    used: RefCell<Vec<SceneFile>>,
-}
-
-/// A file that a scene was made from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SceneFile {
-    /// As the scene names it.
-    pub name: String,
-    /// Whether it was looked for where the command was given, not beside the scene.
-    pub here: bool,
-    source: FileSource,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq)]
-enum FileSource {
-    Path(PathBuf),
-    Embedded(&'static str),
-}
-
-impl SceneFile {
-    /// Its bytes.
-    ///
-    /// # Errors
-    /// If it can no longer be opened.
-    pub fn open(&self) -> std::io::Result<Box<dyn Read>> {
-        Ok(match &self.source {
-            FileSource::Path(path) => Box::new(File::open(path)?),
-            FileSource::Embedded(text) => Box::new(text.as_bytes()),
-        })
-    }
-}
-
-impl<'a> Files<'a> {
-    pub(crate) fn new(place: Place<'a>) -> Self {
-        Self {
-            place,
-            used: RefCell::default(),
-        }
-    }
-
-    /// The files that were asked for.
-    pub(crate) fn used(&self) -> Vec<SceneFile> {
-        self.used.borrow().clone()
-    }
-
-    /// Where a file is; `here`: not beside the scene, but where the command was given.
-    fn find(&self, name: &str, here: bool) -> Result<FileSource, String> {
-        let source = match self.place {
-            Place::Kept(files, folder) => {
-                let is_it = |file: &&KeptFile| file.name == name && file.here == here;
-                match files.iter().find(is_it) {
-                    Some(file) => FileSource::Path(folder.join(&file.copy)),
-                    None => return Err("the run has kept no copy of it".to_owned()),
-                }
-            }
-            _ if here => FileSource::Path(PathBuf::from(name)),
-            Place::Folder(folder) => FileSource::Path(folder.join(name)),
-            Place::Embedded(files) => match files.iter().find(|(file, _)| *file == name) {
-                Some((_, text)) => FileSource::Embedded(text),
-                None => return Err("built-in scenes have no such file".to_owned()),
-            },
-        };
-        let file = SceneFile {
-            name: name.to_owned(),
-            here,
-            source: source.clone(),
-        };
-        let mut used = self.used.borrow_mut();
-        if !used.contains(&file) {
-            used.push(file);
-        }
-        Ok(source)
-    }
-
-    /// The content of a file of at most `limit` bytes, or why there is none.
-    pub(crate) fn bytes(&self, name: &str, here: bool, limit: u64) -> Result<Vec<u8>, String> {
-        match self.find(name, here)? {
-            FileSource::Path(path) => read_plain(&path, limit),
-            FileSource::Embedded(text) => Ok(text.as_bytes().to_vec()),
-        }
-    }
-
-    /// Its path, if it is there.
-    pub(crate) fn path(&self, name: &str, here: bool) -> Result<PathBuf, String> {
-        match self.find(name, here)? {
-            FileSource::Path(path) => {
-                check_plain(&path)?;
-                Ok(path)
-            }
-            FileSource::Embedded(_) => Err("built-in scenes have no such file".to_owned()),
-        }
-    }
-}
-
-/// Whether there is a plain file, or why not; its length.
+/// Returns the length of a plain file, or the reason why it cannot be read.
 fn check_plain(path: &Path) -> Result<u64, String> {
     let info = std::fs::metadata(path).map_err(|error| io_words(&error))?;
     if info.is_file() {
@@ -192,7 +270,7 @@ fn check_plain(path: &Path) -> Result<u64, String> {
     }
 }
 
-/// All of a plain file, if it has no more than `limit` bytes.
+/// Reads all of a plain file that has no more than `limit` bytes.
 fn read_plain(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
     let too_large = |length: u64| {
         Err(format!(
@@ -207,7 +285,7 @@ fn read_plain(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
     }
     let file = File::open(path).map_err(|error| io_words(&error))?;
     let mut bytes = Vec::with_capacity(length as usize);
-    // It may have grown meanwhile, or be one of those that never say how long they are.
+    // The file may have grown since its length was read, or never say how long it is.
     file.take(limit + 1)
         .read_to_end(&mut bytes)
         .map_err(|error| io_words(&error))?;
@@ -217,7 +295,7 @@ fn read_plain(path: &Path, limit: u64) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// What the system says, without its number.
+/// Returns the message of the system without its number.
 fn io_words(error: &std::io::Error) -> String {
     match error.kind() {
         std::io::ErrorKind::NotFound => "there is no such file".to_owned(),

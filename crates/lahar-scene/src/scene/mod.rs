@@ -18,33 +18,38 @@
 //! # Ok::<(), lahar_scene::error::SceneError>(())
 //! ```
 
+mod bodies;
 mod build;
 mod check;
 mod colliders;
 mod comparison;
+mod contact;
 mod controls;
 mod document;
+mod domain;
 mod files;
 mod forces;
 mod formula;
 mod keys;
+mod limits;
+mod material;
 mod motion;
 mod plan;
 mod preset;
 mod probes;
 mod read;
+mod read_plan;
 mod reference;
 mod shapes;
 mod stiffness;
 #[cfg(test)]
 mod tests;
 mod view;
+mod warnings;
 
 pub use colliders::{ColliderInfo, colliders_of};
 pub use comparison::Comparison;
 pub use controls::Controls;
-pub(crate) use document::shorten;
-pub(crate) use files::not_text;
 pub use reference::{docs, docs_of, schema};
 pub use stiffness::SoundSpeeds;
 pub use view::{BodyView, Camera, ColorBy, MaterialView, SceneView, Setting, SettingValue};
@@ -52,36 +57,16 @@ pub use view::{BodyView, Camera, ColorBy, MaterialView, SceneView, Setting, Sett
 use crate::builtin;
 use crate::error::SceneError;
 use document::{Document, Span, json_table};
-use files::{Files, Place, read_text};
-pub use files::{KeptFile, SceneFile};
+use files::{EmbeddedFiles, Files, KeptFiles, read_text};
+pub use files::{FileSource, FolderFiles, KeptFile, SceneFile, SceneFiles};
 use lahar::particles::{FIELDS, FieldInfo};
 use lahar::{Field, Isa, Simulate, Simulation, TimeStep};
+pub use limits::Limits;
 use motion::InMotion;
 use plan::Plan;
 use read::Reader;
 use std::fmt;
 use std::path::Path;
-
-/// Bounds on what a scene may ask for; a matter of the machine, not of the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// Memory for particles and grid \[bytes\].
-    pub memory: u64,
-}
-
-impl Limits {
-    /// What a particle takes, with its part of the grid \[bytes\], at most about.
-    pub const BYTES_PER_PARTICLE: f64 = 250.0;
-}
-
-impl Default for Limits {
-    /// 16 GB.
-    fn default() -> Self {
-        Self {
-            memory: 16_000_000_000,
-        }
-    }
-}
 
 /// Kind of numbers that a simulation computes with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -224,7 +209,21 @@ impl Scene {
         limits: &Limits,
     ) -> Result<Self, SceneError> {
         let folder = Path::new(name).parent().unwrap_or(Path::new(""));
-        read_scene(text, name, overrides, limits, Place::Folder(folder))
+        Self::parse_with(text, name, overrides, limits, &FolderFiles(folder.into()))
+    }
+
+    /// [`Scene::parse_within`] with other files: from memory, where there is no file system.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with its line and column.
+    pub fn parse_with(
+        text: &str,
+        name: &str,
+        overrides: &[(String, String)],
+        limits: &Limits,
+        files: &dyn SceneFiles,
+    ) -> Result<Self, SceneError> {
+        read_scene(text, name, overrides, limits, files)
     }
 
     /// Reads a built-in scene by its name, or a file.
@@ -245,8 +244,8 @@ impl Scene {
         limits: &Limits,
     ) -> Result<Self, SceneError> {
         if let Some(scene) = builtin::find(what) {
-            let files = Place::Embedded(scene.files);
-            return read_scene(scene.text, scene.name, overrides, limits, files);
+            let files = EmbeddedFiles(scene.files);
+            return read_scene(scene.text, scene.name, overrides, limits, &files);
         }
         Self::parse_within(&read_text(what)?, what, overrides, limits)
     }
@@ -262,7 +261,7 @@ impl Scene {
         limits: &Limits,
         (files, folder): (&[KeptFile], &Path),
     ) -> Result<Self, SceneError> {
-        read_scene(text, name, overrides, limits, Place::Kept(files, folder))
+        read_scene(text, name, overrides, limits, &KeptFiles { files, folder })
     }
 
     /// The scene of a run, from [`Scene::resolved`] as its record keeps it, and its name; with overrides.
@@ -286,8 +285,8 @@ impl Scene {
         let limits = Limits::default();
         match builtin::find(name) {
             Some(scene) => {
-                let files = Place::Embedded(scene.files);
-                read_scene(&text, name, overrides, &limits, files)
+                let files = EmbeddedFiles(scene.files);
+                read_scene(&text, name, overrides, &limits, &files)
             }
             None => Self::parse_within(&text, name, overrides, &limits),
         }
@@ -392,7 +391,11 @@ impl Scene {
             2 => sides[1],
             _ => sides.iter().map(|side| side.powi(2)).sum::<f64>().sqrt(),
         };
-        let whole = if extent > 0.0 { extent } else { 10.0 * self.dx() };
+        let whole = if extent > 0.0 {
+            extent
+        } else {
+            10.0 * self.dx()
+        };
         let middle = core::array::from_fn(|i| 0.5 * (min[i] + max[i]));
         Some((center.unwrap_or(middle), height.unwrap_or(whole)))
     }
@@ -586,15 +589,15 @@ fn read_scene(
     name: &str,
     overrides: &[(String, String)],
     limits: &Limits,
-    files: Place<'_>,
+    files: &dyn SceneFiles,
 ) -> Result<Scene, SceneError> {
-    let files = Files::new(files);
+    let files = Files::new(files, limits);
     let mut document = Document::parse(text, name, overrides)?;
     let Document { sources, root } = &mut document;
     let dimension = check::check(sources, root)?;
     let reader = Reader::new(sources, root, Span::default());
     if dimension == 2 {
-        let plan = Plan::<2>::read(&reader, limits, &files)?;
+        let plan = Plan::<2>::read(&reader, &files)?;
         scene(
             &document,
             plan,
@@ -603,7 +606,7 @@ fn read_scene(
             files.used(),
         )
     } else {
-        let plan = Plan::<3>::read(&reader, limits, &files)?;
+        let plan = Plan::<3>::read(&reader, &files)?;
         scene(
             &document,
             plan,

@@ -4,7 +4,7 @@
 use super::plan::{Body, Plan};
 use crate::parallel::*;
 use core::ops::Range;
-use lahar::geometry::Shape;
+use lahar::geometry::Bounds;
 use lahar::geometry::sampling::Random;
 use lahar::{Deformation, ParticleBatch};
 
@@ -216,10 +216,7 @@ fn center_of_mass<const D: usize>(batch: &ParticleBatch<D>) -> [f64; D] {
         }
     };
     // Summed from the middle of the bounds, so that nothing is lost far from the origin.
-    let bounds = Shape::Polygon {
-        points: batch.position.clone(),
-    }
-    .bounds();
+    let bounds = Bounds::around_points(&batch.position);
     let middle: [f64; D] = core::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]));
     let mut total = 0.0;
     let mut sum = [0.0; D];

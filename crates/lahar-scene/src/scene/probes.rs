@@ -25,7 +25,10 @@ pub(crate) fn read_probes<const D: usize>(
         if name.is_empty() || !name.chars().all(fits) {
             let error = table.error_at(
                 "name",
-                format!("\"{}\" cannot be a probe's name", super::shorten(name)),
+                format!(
+                    "\"{}\" cannot be a probe's name",
+                    crate::text::shorten(name)
+                ),
             );
             return Err(error.hint("it names a file: use letters, digits, - and _ only"));
         }

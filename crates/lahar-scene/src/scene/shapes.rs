@@ -1,14 +1,10 @@
 //! Reads shapes of bodies and colliders.
 
-use super::Limits;
 use super::files::Files;
 use super::read::Reader;
-use super::text::AXES;
 use crate::error::SceneError;
-use crate::text::shorten;
-use lahar::geometry::{
-    Bounds, Primitive, Shape, Transform, crossing_sides, polygon_area,
-};
+use crate::text::{AXES, shorten};
+use lahar::geometry::{Bounds, Primitive, Shape, Transform, crossing_sides, polygon_area};
 use std::sync::Arc;
 
 /// Parts of one shape at most: each is tested for every particle.
@@ -20,33 +16,44 @@ const DEEPEST: usize = 32;
 /// Corners of a polygon up to which its sides are tested against each other.
 const LARGEST_TESTED_POLYGON: usize = 4000;
 
-/// The files that a shape may name, and limits on their size.
-pub(super) type FileAccess<'a> = (&'a Files<'a>, &'a Limits);
-
 /// Reads the shape in the table `shape`, the key `kind` of it being there, `depth` shapes inside others.
 type ReadKind<const D: usize> =
-    fn(shape: &Reader<'_>, kind: &str, FileAccess<'_>, depth: usize) -> Result<Shape<D>, SceneError>;
+    fn(shape: &Reader<'_>, kind: &str, &Files<'_>, depth: usize) -> Result<Shape<D>, SceneError>;
 
 /// The keys that say what kind of shape a table is, in the order of the documentation.
 fn kinds<const D: usize>() -> [(&'static str, ReadKind<D>); 10] {
     [
         ("box", |shape, kind, _, _| read_box(&inner(shape, kind)?)),
         ("ball", |shape, kind, _, _| read_ball(&inner(shape, kind)?)),
-        ("half_space", |shape, kind, _, _| read_half_space(&inner(shape, kind)?)),
-        ("polygon", |shape, kind, _, _| read_polygon(shape, &inner(shape, kind)?)),
-        ("cylinder", |shape, kind, _, _| read_cylinder(shape, &inner(shape, kind)?)),
-        ("capsule", |shape, kind, _, _| read_rod(&inner(shape, kind)?, true)),
+        ("half_space", |shape, kind, _, _| {
+            read_half_space(&inner(shape, kind)?)
+        }),
+        ("polygon", |shape, kind, _, _| {
+            read_polygon(shape, &inner(shape, kind)?)
+        }),
+        ("cylinder", |shape, kind, _, _| {
+            read_cylinder(shape, &inner(shape, kind)?)
+        }),
+        ("capsule", |shape, kind, _, _| {
+            read_rod(&inner(shape, kind)?, true)
+        }),
         ("mesh", |shape, _, files, _| read_mesh(shape, files)),
-        ("union", |shape, kind, files, depth| Ok(Shape::Union(read_parts(shape, kind, files, depth)?))),
-        ("difference", |shape, kind, files, depth| Ok(Shape::Difference(read_parts(shape, kind, files, depth)?))),
-        ("intersection", |shape, kind, files, depth| Ok(Shape::Intersection(read_parts(shape, kind, files, depth)?))),
+        ("union", |shape, kind, files, depth| {
+            Ok(Shape::Union(read_parts(shape, kind, files, depth)?))
+        }),
+        ("difference", |shape, kind, files, depth| {
+            Ok(Shape::Difference(read_parts(shape, kind, files, depth)?))
+        }),
+        ("intersection", |shape, kind, files, depth| {
+            Ok(Shape::Intersection(read_parts(shape, kind, files, depth)?))
+        }),
     ]
 }
 
 /// Reads a shape, with its transform and copies.
 pub(super) fn read_shape<const D: usize>(
     table: &Reader<'_>,
-    files: FileAccess<'_>,
+    files: &Files<'_>,
     depth: usize,
 ) -> Result<Shape<D>, SceneError> {
     if depth > DEEPEST {
@@ -84,7 +91,7 @@ fn inner<'a>(shape: &Reader<'a>, kind: &str) -> Result<Reader<'a>, SceneError> {
 fn read_parts<const D: usize>(
     shape: &Reader<'_>,
     kind: &str,
-    files: FileAccess<'_>,
+    files: &Files<'_>,
     depth: usize,
 ) -> Result<Vec<Shape<D>>, SceneError> {
     shape
@@ -142,7 +149,12 @@ fn read_polygon<const D: usize>(
     if points.len() <= LARGEST_TESTED_POLYGON
         && let Some((i, j)) = crossing_sides(&points)
     {
-        return Err(table.error_at("points", format!("the polygon crosses itself: the sides from point {i} and from point {j} (from 0)")));
+        return Err(table.error_at(
+            "points",
+            format!(
+                "the polygon crosses itself: the sides from point {i} and from point {j} (from 0)"
+            ),
+        ));
     }
     let bounds = Bounds::around_points(&points);
     if points.len() < 3 || !(polygon_area(&points).abs() > 1e-12 * bounds.volume()) {
@@ -184,7 +196,7 @@ fn read_rod<const D: usize>(table: &Reader<'_>, round: bool) -> Result<Shape<D>,
 /// Reads a mesh file, and brings the mesh to its size and place.
 fn read_mesh<const D: usize>(
     shape: &Reader<'_>,
-    (files, limits): FileAccess<'_>,
+    files: &Files<'_>,
 ) -> Result<Shape<D>, SceneError> {
     if D == 2 {
         return Err(shape
@@ -197,7 +209,7 @@ fn read_mesh<const D: usize>(
         None => shape.text("mesh")?,
     };
     let bytes = files
-        .bytes(path, false, limits.memory / 8)
+        .bytes(path, false, files.limits().memory / 8)
         .map_err(|reason| {
             let message = format!("cannot read \"{}\": {reason}", shorten(path));
             let error = match &keys {

@@ -103,8 +103,9 @@ impl<const D: usize> Primitive<D> {
     pub fn bounds(&self) -> Bounds<D> {
         match self {
             Self::Box { center, half, axes } => {
-                let reach =
-                    |i: usize| -> f64 { (0..D).map(|axis| (axes[axis][i] * half[axis]).abs()).sum() };
+                let reach = |i: usize| -> f64 {
+                    (0..D).map(|axis| (axes[axis][i] * half[axis]).abs()).sum()
+                };
                 Bounds {
                     min: core::array::from_fn(|i| center[i] - reach(i)),
                     max: core::array::from_fn(|i| center[i] + reach(i)),
@@ -402,7 +403,11 @@ mod tests {
                 let (left, _) = primitive.distance_from_center(y - normal * distance);
                 assert!(left.abs() < 1e-12, "{primitive:?} {y:?}: {left}");
                 let p = (Vector(primitive.center()) + y).0;
-                assert_eq!(primitive.contains(&p), distance <= 0.0, "{primitive:?} {y:?}");
+                assert_eq!(
+                    primitive.contains(&p),
+                    distance <= 0.0,
+                    "{primitive:?} {y:?}"
+                );
                 // Where the nearest point jumps there is no gradient; none of these points is there.
                 for i in 0..3 {
                     let mut step = Vector([0.0; 3]);
@@ -432,7 +437,10 @@ mod tests {
                 .filter(|p| primitive.contains(p))
                 .count();
             let counted = bounds.volume() * inside as f64 / n.pow(3) as f64;
-            assert!((counted / volume - 1.0).abs() < 0.01, "{primitive:?}: {counted} {volume}");
+            assert!(
+                (counted / volume - 1.0).abs() < 0.01,
+                "{primitive:?}: {counted} {volume}"
+            );
         }
     }
 }

@@ -73,10 +73,7 @@ impl<const D: usize> Region<D> {
 
     /// Returns true if a part of the shape is cut off. Half-spaces always are, and do not count.
     pub fn is_cut(&self) -> bool {
-        let is_half_space = matches!(
-            self.shape,
-            Shape::Primitive(Primitive::HalfSpace { .. })
-        );
+        let is_half_space = matches!(self.shape, Shape::Primitive(Primitive::HalfSpace { .. }));
         !is_half_space && !self.clip.encloses(&self.shape.bounds())
     }
 
