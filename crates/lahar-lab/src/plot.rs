@@ -1,32 +1,45 @@
-//! Plots of a run's numbers over time, as SVG.
+//! Plots of curves as SVG.
 
 use std::fmt;
 
 use plotters::prelude::*;
 
-/// Lines over a common axis.
+/// A plot of lines over a common axis.
+///
+/// ```
+/// use lahar_lab::plot::{Line, Plot};
+///
+/// let plot = Plot {
+///     title: "Kinetic energy".into(),
+///     x_label: "time [s]".into(),
+///     y_label: "[J]".into(),
+///     lines: vec![Line { name: "apic".into(), points: vec![(0.0, 1.0), (1.0, 0.5)] }],
+/// };
+/// assert!(plot.svg()?.starts_with("<svg"));
+/// # Ok::<(), lahar_lab::plot::PlotError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Plot {
-    /// Above the plot.
+    /// Title above the plot.
     pub title: String,
-    /// Along the lower side, with its unit.
+    /// Quantity and unit of the horizontal axis.
     pub x_label: String,
-    /// Along the left side, with its unit.
+    /// Quantity and unit of the vertical axis.
     pub y_label: String,
-    /// Drawn in this order, each in a color of its own.
+    /// Lines in the order in which they are drawn, each in its own color.
     pub lines: Vec<Line>,
 }
 
-/// A line, broken where a number is not finite.
+/// A line of a plot. It is broken at numbers that are not finite.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Line {
-    /// In the legend.
+    /// Name in the legend.
     pub name: String,
-    /// (x, y).
+    /// Points as pairs of x and y.
     pub points: Vec<(f64, f64)>,
 }
 
-/// Why a plot could not be drawn.
+/// The reason why a plot cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlotError(String);
 
@@ -38,12 +51,13 @@ impl fmt::Display for PlotError {
 
 impl std::error::Error for PlotError {}
 
-/// Of a plot \[pixels\].
+/// Width and height of a plot \[pixels\].
 const SIZE: (u32, u32) = (760, 420);
 
+/// Color of the lines of the grid.
 const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
 
-/// Told apart with every kind of eye (P. Tol, "Color schemes", 2021: bright, without yellow).
+/// Colors that color-blind people can tell apart (P. Tol's bright scheme, 2021, without yellow).
 const COLORS: [RGBColor; 6] = [
     RGBColor(0x44, 0x77, 0xAA),
     RGBColor(0xEE, 0x66, 0x77),
@@ -54,7 +68,7 @@ const COLORS: [RGBColor; 6] = [
 ];
 
 impl Plot {
-    /// The SVG document.
+    /// Draws the plot as an SVG document.
     ///
     /// # Errors
     /// If there is no finite point.
@@ -62,7 +76,7 @@ impl Plot {
         self.svg_with(None)
     }
 
-    /// [`Plot::svg`] with 0 on the left axis, so that heights are to each other as the numbers are.
+    /// Draws the plot as [`Plot::svg`] does, with 0 on the vertical axis, so that heights are proportional to numbers.
     ///
     /// # Errors
     /// If there is no finite point.
@@ -70,7 +84,7 @@ impl Plot {
         self.svg_with(Some(0.0))
     }
 
-    /// With `shown` on the left axis.
+    /// Draws the plot with the value `shown` on the vertical axis.
     fn svg_with(&self, shown: Option<f64>) -> Result<String, PlotError> {
         let mut text = String::new();
         let root = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
@@ -150,21 +164,21 @@ fn finite(point: &&(f64, f64)) -> bool {
     point.0.is_finite() && point.1.is_finite()
 }
 
-/// From the least to the largest with so much of it as `room` at both ends; never empty.
-fn range(values: impl Iterator<Item = f64>, room: f64) -> Option<core::ops::Range<f64>> {
+/// Returns the range of values, enlarged at both ends by the share `margin`; never empty.
+fn range(values: impl Iterator<Item = f64>, margin: f64) -> Option<core::ops::Range<f64>> {
     let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
         (low.min(x), high.max(x))
     });
     if low > high {
         return None;
     }
-    // What differs by rounding only is drawn as constant.
+    // Values that differ by rounding only are drawn as a constant.
     let least = 1e-9 * low.abs().max(high.abs()).max(1e-30);
-    let room = (room * (high - low)).max(least);
-    Some(low - room..high + room)
+    let margin = (margin * (high - low)).max(least);
+    Some(low - margin..high + margin)
 }
 
-/// As few digits as tell the number: 0.25, 1.2e-5.
+/// Writes a number with few digits: 0.25, 1.2e-5.
 fn number(value: f64) -> String {
     let size = value.abs();
     if size < 1e-12 {

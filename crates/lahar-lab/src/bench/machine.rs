@@ -1,4 +1,4 @@
-//! The machine that measures: what it is, its clock, its memory.
+//! The machine that measures: its name, clock and memory.
 
 use std::fs;
 use std::sync::LazyLock;
@@ -6,19 +6,19 @@ use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-/// What a speed belongs to.
+/// A machine, which each measured speed belongs to.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Machine {
-    /// The processor's name, as far as the system tells it.
+    /// Name of the processor, or its architecture if the name is not known.
     pub cpu: String,
-    /// Threads that run at the same time.
+    /// Number of threads that can run at the same time.
     pub threads: usize,
-    /// Operating system.
+    /// Name of the operating system.
     pub system: String,
 }
 
 impl Machine {
-    /// The one that this runs on.
+    /// Returns the machine that this program runs on.
     pub fn here() -> Self {
         let cpu = fs::read_to_string("/proc/cpuinfo").ok().and_then(|text| {
             let line = text.lines().find(|line| line.starts_with("model name"))?;
@@ -32,14 +32,14 @@ impl Machine {
     }
 }
 
-/// Seconds since this was first asked.
+/// Returns the seconds since the first call.
 pub fn seconds() -> f64 {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     START.elapsed().as_secs_f64()
 }
 
-/// Seconds that threads of this process were ready to compute and had no processor, all together, if the
-/// system says.
+/// Returns the seconds in which threads of this process were ready to compute but had no processor, summed over all
+/// threads. `None` if the system does not tell.
 pub(super) fn waited() -> Option<f64> {
     let mut nanoseconds = 0.0;
     for task in fs::read_dir("/proc/self/task").ok()? {
@@ -49,13 +49,13 @@ pub(super) fn waited() -> Option<f64> {
     Some(1e-9 * nanoseconds)
 }
 
-/// From here on [`peak`] counts anew, where the system can.
+/// Resets the peak of memory that [`peak`] returns, if the system can.
 pub(super) fn forget_peak() {
-    // Linux: 5 sets the peak to what is used now.
+    // On Linux, 5 sets the peak to the memory in use.
     drop(fs::write("/proc/self/clear_refs", "5"));
 }
 
-/// The most memory that the process has had \[bytes\].
+/// Returns the largest memory of the process so far \[bytes\].
 pub(super) fn peak() -> Option<u64> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
     let line = status

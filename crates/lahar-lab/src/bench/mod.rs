@@ -1,12 +1,12 @@
-//! How fast scenes are computed: particle-steps per second, by a fixed protocol.
+//! The speed of simulations in particle-steps per second, measured by a fixed protocol.
 //!
 //! ```text
-//! case ─► its scene, dx by the number of particles ─► built ─► warm up: past the second sort
-//!                                                              └─► runs, timed: from one sort to the next
+//! case ─► its scene, with dx for the number of particles ─► build ─► warm up: past the second sort
+//!                                                                    └─► timed runs: from one sort to the next
 //! ```
-//! A scene starts in motion, so that particles pass from block to block and meet walls soon. A run is timed
-//! with everything that `lahar run` does but output: sorting, corrections, time steps, the copy that a frame
-//! that fails begins again from. As many sorts fall into it as it is long: none is left out, none counted twice.
+//! Scenes start in motion, so that particles soon pass from block to block and meet walls. The time covers everything
+//! that `lahar run` does but output: sorting, corrections, time steps, and the copy from which a failed frame is retried.
+//! A run ends with a sort, so that it has its fair share of them.
 
 mod machine;
 mod table;
@@ -20,18 +20,18 @@ use lahar_scene::scene::{Precision, Scene};
 pub use machine::{Machine, seconds};
 pub use table::{BenchReport, growth};
 
-/// What is measured.
+/// A benchmark case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Case {
-    /// As the command line spells it.
+    /// Name on the command line.
     pub name: &'static str,
-    /// What it is, in a few words.
+    /// Description in a few words.
     pub what: &'static str,
-    /// The built-in scene that it runs.
+    /// Name of the built-in scene that it runs.
     pub scene: &'static str,
-    /// Laid over it.
+    /// Keys and values laid over the scene.
     set: &'static [(&'static str, &'static str)],
-    /// With which instructions, if not with those that are asked for.
+    /// Instruction set, if the case fixes it.
     isa: Option<Isa>,
 }
 
@@ -51,12 +51,12 @@ impl Case {
 pub const CASES: &[Case] = &[
     Case::of(
         "dam-3d",
-        "default fluid, 8 particles a cell",
+        "default fluid, 8 particles per cell",
         "bench-dam-3d",
     ),
     Case::of(
         "dam-2d",
-        "default fluid, 4 particles a cell",
+        "default fluid, 4 particles per cell",
         "bench-dam-2d",
     ),
     Case::of(
@@ -83,26 +83,32 @@ pub const CASES: &[Case] = &[
     },
 ];
 
-/// The case called `name`.
+/// Returns the case called `name`.
+///
+/// ```
+/// use lahar_lab::bench;
+///
+/// assert_eq!(bench::find("dam-3d").unwrap().scene, "bench-dam-3d");
+/// ```
 pub fn find(name: &str) -> Option<&'static Case> {
     CASES.iter().find(|case| case.name == name)
 }
 
-/// How cases are measured.
+/// Options of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// About so many particles; the scene's own number if none.
+    /// Approximate number of particles; `None` for that of the scene.
     pub particles: Option<f64>,
-    /// Instruction set, where the case does not say.
+    /// Instruction set, unless the case fixes it.
     pub isa: Isa,
-    /// Timed runs.
+    /// Number of timed runs.
     pub runs: usize,
 }
 
-/// Why a case could not be measured.
+/// The reason why a case could not be measured.
 #[derive(Clone, Debug)]
 pub enum BenchError {
-    /// Its scene cannot be built.
+    /// The scene cannot be built.
     Scene(Box<SceneError>),
     /// The simulation failed.
     Failure(String),
@@ -114,79 +120,78 @@ impl From<SceneError> for BenchError {
     }
 }
 
-/// Nanoseconds of wall time a particle and substep, by phase.
+/// Wall time per particle and substep \[ns\], by phase.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Nanoseconds {
-    /// Moving particles to their blocks.
+    /// Sorting particles into blocks.
     pub sort: f64,
-    /// Setting volumes right by how full the grid is.
+    /// Correcting volumes by the density on the grid.
     pub volume: f64,
-    /// Particles to grid.
+    /// Particles to grid (P2G).
     pub scatter: f64,
-    /// Grid update.
+    /// Grid update and boundaries.
     pub grid: f64,
-    /// Grid to particles.
+    /// Grid to particles (G2P).
     pub gather: f64,
-    /// What else a run needs.
+    /// All other work.
     pub other: f64,
 }
 
-/// What a case came to.
+/// The measurement of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measurement {
-    /// The case's name.
+    /// Name of the case.
     pub case: String,
     /// "f32" or "f64".
     pub precision: String,
-    /// The instruction set in use.
+    /// Name of the instruction set in use.
     pub isa: String,
-    /// Threads that computed.
+    /// Number of threads that computed.
     pub threads: usize,
-    /// Particles.
+    /// Number of particles.
     pub particles: u64,
-    /// Cells along 1 m.
+    /// Number of cells along 1 m.
     #[serde(alias = "cells_per_metre")]
     pub cells_per_meter: f64,
-    /// Seconds that building the scene took.
+    /// Seconds in which the scene was built.
     pub build_seconds: f64,
-    /// Substeps before the runs.
+    /// Number of substeps before the runs.
     pub warm_up: u64,
     /// Particle-steps per second of each run.
     pub runs: Vec<f64>,
-    /// The least of them.
+    /// Smallest rate of the runs.
     pub min: f64,
-    /// Half of them are below, half above.
+    /// Median rate of the runs.
     pub median: f64,
-    /// The largest.
+    /// Largest rate of the runs.
     pub max: f64,
-    /// Substeps in all runs.
+    /// Number of substeps in all runs.
     pub substeps: u64,
-    /// Sorts in all runs.
+    /// Number of sorts in all runs.
     pub sorts: u64,
-    /// Where the time goes, over all runs.
+    /// Wall time by phase, over all runs.
     pub nanoseconds: Nanoseconds,
-    /// The part of the time in which a thread was ready to compute and had no processor: above some percent,
-    /// others were using the machine, and rates are too low. `None` where the system does not say.
+    /// Share of time in which a thread was ready to compute but had no processor. Above some percent, other programs used
+    /// the machine, and rates are too low. `None` if the system does not tell.
     #[serde(default)]
     pub waited: Option<f64>,
-    /// The most memory that the process had since the case began, building included \[bytes\]; `None` where
-    /// the system does not say.
+    /// Largest memory of the process since the case began, with building \[bytes\]. `None` if the system does not tell.
     pub memory_peak: Option<u64>,
 }
 
-/// Sorts before the first run.
+/// Number of sorts before the first run.
 const WARM_SORTS: u64 = 2;
 
-/// Substeps of a run at the least; it ends with the next sort.
+/// Fewest substeps of a run, which ends with the next sort.
 const LEAST_SUBSTEPS: u64 = 20;
 
-/// Substeps after which a run ends without a sort, and warming up too: nothing moves.
+/// Number of substeps after which a run or the warm-up ends without a sort, because nothing moves.
 const MOST_SUBSTEPS: u64 = 1000;
 
-/// The scene of a case.
+/// Loads the scene of a case, with about `particles` particles.
 ///
 /// # Errors
-/// If so many particles cannot be.
+/// If the scene cannot have this number of particles.
 pub fn scene(case: &Case, particles: Option<f64>) -> Result<Scene, SceneError> {
     let mut set: Vec<(String, String)> = case
         .set
@@ -197,7 +202,7 @@ pub fn scene(case: &Case, particles: Option<f64>) -> Result<Scene, SceneError> {
     let Some(particles) = particles else {
         return Ok(scene);
     };
-    // Domains' sides are whole meters: a whole number of cells along one meter fits them all.
+    // The sides of domains are whole meters, so a whole number of cells per meter fits them.
     let finer = (particles / scene.expected_particles()).powf(1.0 / scene.dimension as f64);
     let cells = (cells_per_meter(&scene) * finer).round().max(1.0);
     set.push(("dx".to_owned(), format!("{:?}", 1.0 / cells)));
@@ -208,7 +213,7 @@ fn cells_per_meter(scene: &Scene) -> f64 {
     (1.0 / scene.dx()).round()
 }
 
-/// Measures a case on the threads of the pool that this is called in.
+/// Measures a case on the threads of the pool in which it is called.
 ///
 /// # Errors
 /// If the scene cannot be built or its simulation fails.
@@ -219,7 +224,7 @@ pub fn measure(case: &Case, options: &Options) -> Result<Measurement, BenchError
     let isa = case.isa.unwrap_or(options.isa);
     let simulation = scene.build(isa)?.simulation;
     let build_seconds = seconds() - began;
-    // A run ends with a sort, not with a frame of the scene.
+    // Runs end with a sort, not with a frame of the scene.
     let schedule = Schedule::new(FrameEnd::Open);
     let mut driver = Driver::new(simulation, schedule).with_clock(seconds);
     let warm_up = until_sorted(&mut driver, WARM_SORTS, 0)?;
@@ -267,7 +272,7 @@ pub fn measure(case: &Case, options: &Options) -> Result<Measurement, BenchError
     })
 }
 
-/// Takes substeps, at least `least`, as one frame, until particles have been sorted `sorts` times; returns how many.
+/// Takes at least `least` substeps as one frame, until particles have been sorted `sorts` times. Returns their number.
 fn until_sorted(driver: &mut Driver, sorts: u64, least: u64) -> Result<u64, BenchError> {
     let before = driver.simulation().phase_times().sorts;
     let mut substeps = 0;
@@ -289,7 +294,7 @@ fn until_sorted(driver: &mut Driver, sorts: u64, least: u64) -> Result<u64, Benc
     Ok(substeps)
 }
 
-/// Of sorted numbers, at least one.
+/// Returns the median of sorted numbers, of which there must be at least one.
 fn median(sorted: &[f64]) -> f64 {
     let half = sorted.len() / 2;
     if sorted.len().is_multiple_of(2) {
@@ -300,7 +305,7 @@ fn median(sorted: &[f64]) -> f64 {
 }
 
 impl Nanoseconds {
-    /// The phases between two readings, `time` seconds apart, for so many particle-steps.
+    /// Returns the times of phases between two readings, `time` seconds and `steps` particle-steps apart.
     fn between(start: &PhaseTimes, end: &PhaseTimes, time: f64, steps: f64) -> Self {
         let each = |phase: fn(&PhaseTimes) -> f64| 1e9 * (phase(end) - phase(start)) / steps;
         let mut phases = Self {
@@ -315,7 +320,7 @@ impl Nanoseconds {
         phases
     }
 
-    /// All phases.
+    /// Returns the sum over all phases.
     pub fn sum(&self) -> f64 {
         self.sort + self.volume + self.scatter + self.grid + self.gather + self.other
     }

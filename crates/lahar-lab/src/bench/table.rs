@@ -1,23 +1,24 @@
-//! Measurements as a table, as JSON, beside a baseline, and as plots.
+//! Measurements as a table, beside a baseline, and as plots.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Machine, Measurement};
 use crate::plot::{Line, Plot};
 
-/// What was measured, where.
+/// The measurements of one machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BenchReport {
     /// Version of the program.
     pub version: String,
-    /// The machine.
+    /// The machine that measured.
     pub machine: Machine,
-    /// The cases.
+    /// One measurement per case.
     pub results: Vec<Measurement>,
 }
 
 impl BenchReport {
-    /// What a baseline says of the same case: same precision, instruction set, threads, and particles to a tenth.
+    /// Returns the measurement of the same case, with the same precision, instruction set and threads, and a number of
+    /// particles that differs by less than a tenth.
     fn same(&self, measured: &Measurement) -> Option<&Measurement> {
         let alike = |other: &&Measurement| {
             let key = |m: &Measurement| {
@@ -34,7 +35,7 @@ impl BenchReport {
         self.results.iter().find(alike)
     }
 
-    /// A table in Markdown; with ratios of medians to those of `baseline`.
+    /// Writes a table in Markdown, with the ratios of medians to those of `baseline`.
     pub fn text(&self, baseline: Option<&Self>) -> String {
         let mut head: Vec<String> = [
             "case",
@@ -92,8 +93,8 @@ impl BenchReport {
             system,
         } = &self.machine;
         text += &format!(
-            "\nMedian, min and max in million particle-steps a second; phases in nanoseconds a particle and substep; waited: \
-             the part of the time in which others had the processor.\n\
+            "\nMedian, min and max in million particle-steps per second; phases in nanoseconds per particle and substep; waited: \
+             the share of time in which a thread was ready but had no processor.\n\
              Version {} on {cpu}, {threads} threads, {system}.\n",
             self.version
         );
@@ -105,7 +106,7 @@ impl BenchReport {
     }
 }
 
-/// Columns as wide as their widest word.
+/// Writes a table with columns as wide as their widest word.
 fn table(head: &[String], rows: &[Vec<String>]) -> String {
     let width = |column: usize| {
         let words = rows.iter().map(|row| row[column].len());
@@ -130,8 +131,8 @@ fn table(head: &[String], rows: &[Vec<String>]) -> String {
     [line(head), line(&rule)].into_iter().chain(rows).collect()
 }
 
-/// Plots of how rate and memory grow: over particles, a line for each case and number of threads; over
-/// threads, a line for each case and number of particles. Each with its file's name.
+/// Plots the growth of rate and memory: over particles, with one line per case and number of threads; and over threads,
+/// with one line per case and number of particles. Returns file names without ending, and plots.
 pub fn growth(results: &[Measurement]) -> Vec<(&'static str, Plot)> {
     let threads = |m: &Measurement| format!("{}, {} thread(s)", m.case, m.threads);
     let particles = |m: &Measurement| format!("{}, {:.0e} particles", m.case, m.particles as f64);
@@ -145,7 +146,7 @@ pub fn growth(results: &[Measurement]) -> Vec<(&'static str, Plot)> {
         lines,
     };
     let particle_axis = "particles, as a power of ten";
-    let rate_axis = "million particle-steps a second";
+    let rate_axis = "million particle-steps per second";
     [
         (
             "particles",
@@ -161,7 +162,7 @@ pub fn growth(results: &[Measurement]) -> Vec<(&'static str, Plot)> {
             plot(
                 "Peak memory over particles",
                 particle_axis,
-                "bytes a particle",
+                "bytes per particle",
                 lines(results, threads, decades, memory),
             ),
         ),
@@ -180,7 +181,7 @@ pub fn growth(results: &[Measurement]) -> Vec<(&'static str, Plot)> {
     .collect()
 }
 
-/// A line a name, in the order in which names come up; points by ascending x.
+/// Returns one line per name, in the order of first use, with points by ascending x.
 fn lines(
     results: &[Measurement],
     name: impl Fn(&Measurement) -> String,

@@ -55,12 +55,13 @@ pub(super) const CASES: &[Case] = &[
     },
 ];
 
-/// Times and lengths of a series in other units.
+/// Multiplies the times and the values of a series by constants.
 fn scaled(series: &[(f64, f64)], time: f64, value: f64) -> Series {
     series.iter().map(|p| (p.0 * time, p.1 * value)).collect()
 }
 
-const SHIFT: f64 = 0.3; // the most that may be fitted, in the time unit of the table
+/// Largest shift of time that is fitted, in the time unit of the table.
+const SHIFT: f64 = 0.3;
 
 fn d1(session: &mut Session<'_>) -> Result<(), CaseError> {
     let front = points(include_str!(
@@ -175,7 +176,7 @@ fn d2(session: &mut Session<'_>) -> Result<(), CaseError> {
 /// Height of the water in d3-wall-impact \[m\].
 const H: f64 = 0.6;
 
-/// The readings of gauges in t sqrt(g/H) and p/(rho g H), for each resolution that is wanted.
+/// Returns the readings of gauges, in t sqrt(g/H) and p/(rho g H), for each resolution that is wanted.
 fn impacts(
     session: &mut Session<'_>,
     names: &[&str],
@@ -196,7 +197,7 @@ fn impacts(
     Ok(all)
 }
 
-/// When a pressure first stays above a tenth of its mean over the plateau.
+/// Returns the time at which a pressure first exceeds a tenth of its mean over the plateau.
 fn arrival(series: &[(f64, f64)]) -> f64 {
     let threshold = 0.1 * mean(series, 3.0, 6.0);
     series
@@ -225,7 +226,7 @@ fn d3(session: &mut Session<'_>) -> Result<(), CaseError> {
         .map(|table| vec![("experiment".to_owned(), table.1.clone())])
         .collect();
     for (cells, gauges) in impacts(session, &["L1", "L3", "L4"])? {
-        // One shift for all gauges: the gate takes time to open.
+        // All gauges have one shift, since the gate takes time to open.
         let shift = arrival(&gauges[0]) - arrival(&tables[0].1);
         session.report(
             &format!("shift, of t sqrt(g/H), H/dx = {cells}"),
@@ -342,21 +343,20 @@ fn d5(session: &mut Session<'_>) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// A series from the moment on when it first reaches `threshold`.
+/// Shifts the time of a series so that 0 is the moment at which it reaches `threshold`.
 fn since(series: &[(f64, f64)], threshold: f64) -> Series {
     let first = series.iter().find(|p| p.1 >= threshold);
     let start = first.map_or(f64::NAN, |p| p.0);
     series.iter().map(|p| (p.0 - start, p.1)).collect()
 }
 
-/// What tells that the bore has come: a third of the most that was measured of the force \[N\] and of the
-/// velocity \[m/s\].
+/// Force \[N\] and velocity \[m/s\] at which the bore has arrived: a third of the largest values measured.
 const BORE: [f64; 2] = [11.0, 0.7];
 
-/// The bore's passage: from a little before it comes until the force turns \[s\].
+/// Passage of the bore: from a little before its arrival until the force turns \[s\].
 const PASSAGE: [f64; 2] = [-0.05, 0.97];
 
-/// What the velocity was measured over without a gap \[s\].
+/// Time over which the velocity was measured without a gap \[s\].
 const GAUGED: [f64; 2] = [0.01, 0.6];
 
 fn d6(session: &mut Session<'_>) -> Result<(), CaseError> {
@@ -364,7 +364,7 @@ fn d6(session: &mut Session<'_>) -> Result<(), CaseError> {
         &points(include_str!("../../data/dambreak_yeh_petroff_force.csv")),
         BORE[0],
     );
-    // Its clock begins when the bore comes.
+    // The clock of this table begins at the bore's arrival.
     let velocity = points(include_str!("../../data/dambreak_yeh_petroff_velocity.csv"));
     let impulse =
         |series: &[(f64, f64)]| mean(series, PASSAGE[0], PASSAGE[1]) * (PASSAGE[1] - PASSAGE[0]);
@@ -376,7 +376,7 @@ fn d6(session: &mut Session<'_>) -> Result<(), CaseError> {
         .collect();
     let mut forces = vec![("experiment".to_owned(), force.clone())];
     let mut velocities = vec![("experiment".to_owned(), velocity.clone())];
-    // Bodies that are wider than the finer tank are cut off at its side.
+    // The finer tank is narrower; bodies are cut off at its side.
     let coarse: &[(&str, &str)] = &[];
     let fine: &[_] = &[("dx", "0.0125"), ("domain.max", "[1.6,0.75,0.6125]")];
     for set in session.resolutions(coarse, fine) {

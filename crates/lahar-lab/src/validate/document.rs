@@ -1,4 +1,4 @@
-//! Findings as a table for people, as JSON, and as docs/validation.md.
+//! Findings as a table for a terminal, as JSON, and as docs/validation.md.
 
 use std::fmt::Write as _;
 
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::{Case, Finding, Outcome};
 
-/// A number with as many digits as say something.
+/// Writes a number with five significant digits, or in scientific notation if it is very small or large.
 fn number(x: f64) -> String {
     let size = x.abs();
     if x == 0.0 || !x.is_finite() {
@@ -46,7 +46,7 @@ const NAMES: [&str; 7] = [
     "pass",
 ];
 
-/// The findings as a table for a terminal, a line each under a line of names.
+/// Writes the findings as a table for a terminal, one line per finding under a line of names.
 pub fn text<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> String {
     let mut rows = vec![NAMES.map(str::to_owned)];
     rows.extend(findings.into_iter().map(cells));
@@ -62,7 +62,7 @@ pub fn text<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> String {
         let mut line = String::new();
         for (k, (cell, width)) in row.iter().zip(widths).enumerate() {
             let space = " ".repeat(width - cell.chars().count());
-            // Words to the left, numbers to the right.
+            // Words are aligned to the left, numbers to the right.
             let padded = if (2..=5).contains(&k) {
                 format!("{space}{cell}")
             } else {
@@ -77,7 +77,7 @@ pub fn text<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> String {
     out
 }
 
-/// The findings as the list that `--json` prints.
+/// Returns the findings as the list that `--json` prints.
 pub fn json<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> Value {
     let object = |finding: &Finding| {
         json!({
@@ -93,7 +93,8 @@ pub fn json<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> Value {
     findings.into_iter().map(object).collect()
 }
 
-/// docs/validation.md: every case with its scene, findings and plots. `how` tells the command, version and machine.
+/// Writes docs/validation.md: every case with its scene, findings and plots. `how` is a sentence with the command, version
+/// and machine; `images` is the folder of the plots.
 pub fn document(outcomes: &[(&Case, Outcome)], images: &str, how: &str) -> String {
     let mut out = format!(
         "# Validation\n\n{how}\n\nErrors are relative to the reference unless the quantity says otherwise; a quantity without a target is \
@@ -102,18 +103,16 @@ pub fn document(outcomes: &[(&Case, Outcome)], images: &str, how: &str) -> Strin
     let findings = || outcomes.iter().flat_map(|(_, outcome)| &outcome.findings);
     let targets = findings().filter(|finding| finding.target.is_some());
     let met = targets.clone().filter(|finding| finding.pass()).count();
-    writeln!(out, "\n{met} of {} targets are met.", targets.count())
-        .expect("strings take everything");
+    writeln!(out, "\n{met} of {} targets are met.", targets.count()).expect("writing to a String");
     for (case, outcome) in outcomes {
         write!(
             out,
             "\n## {}: {}\n\nReference: {}. Scene: `{}`.\n\n",
             case.id, case.title, case.reference, case.scene
         )
-        .expect("strings take everything");
+        .expect("writing to a String");
         if let Some(failure) = &outcome.failure {
-            write!(out, "**The simulation failed**: {failure}\n\n")
-                .expect("strings take everything");
+            write!(out, "**The simulation failed**: {failure}\n\n").expect("writing to a String");
         }
         out += "| quantity | reference | ours | error | target | |\n|---|---|---|---|---|---|\n";
         for finding in &outcome.findings {
@@ -123,15 +122,14 @@ pub fn document(outcomes: &[(&Case, Outcome)], images: &str, how: &str) -> Strin
                 "| {} |",
                 cells.map(|cell| cell.replace('|', "\\|")).join(" | ")
             )
-            .expect("strings take everything");
+            .expect("writing to a String");
         }
         for (name, plot) in &outcome.plots {
-            write!(out, "\n![{}]({images}/{name}.svg)\n", plot.title)
-                .expect("strings take everything");
+            write!(out, "\n![{}]({images}/{name}.svg)\n", plot.title).expect("writing to a String");
         }
         out += "\nRuns:\n\n";
         for run in &outcome.runs {
-            writeln!(out, "- `{run}`").expect("strings take everything");
+            writeln!(out, "- `{run}`").expect("writing to a String");
         }
     }
     out
@@ -173,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_never_passes() {
+    fn nan_never_passes() {
         assert!(!finding(f64::NAN, Some(0.01)).pass());
     }
 }

@@ -1,4 +1,4 @@
-//! F3, F7–F9: channels, drops, patches, jets.
+//! F3, F7–F9: channel flows, a drop, a turning square, a jet.
 
 use lahar::Field;
 
@@ -46,7 +46,7 @@ fn f3(session: &mut Session<'_>) -> Result<(), CaseError> {
     starts(session, "f3-couette", "Couette", 3)
 }
 
-/// A flow between plates against number `column` of the table.
+/// Compares the start of a flow between plates with column number `column` of the table.
 fn starts(
     session: &mut Session<'_>,
     scene: &'static str,
@@ -60,7 +60,7 @@ fn starts(
     for cells in [20.0, 40.0] {
         let dx = 1.0 / cells;
         let mut running = session.start_scene(scene, &[("dx", dx.to_string())])?;
-        // Speeds over y, at each frame: means over layers of particles.
+        // The profile of the speed over y in each frame: means over layers of particles.
         let mut profiles: Vec<(f64, Series)> = Vec::new();
         running.frames(|simulation| {
             let (x, v) = (
@@ -115,7 +115,7 @@ fn starts(
     Ok(())
 }
 
-/// Mean v_x of layers of the height `step`, by the middles of their particles.
+/// Returns the mean v_x of layers of the height `step`, over the mean y of their particles.
 fn layers(x: &[f64], v: &[f64], step: f64) -> Series {
     let mut sums = std::collections::BTreeMap::<i64, [f64; 3]>::new();
     for (x, v) in x.chunks(2).zip(v.chunks(2)) {
@@ -227,8 +227,8 @@ fn f9(session: &mut Session<'_>) -> Result<(), CaseError> {
     for cells in session.resolutions(10.0, 20.0) {
         let mut running = session.start(&[("dx", (0.1 / cells).to_string())])?;
         running.frames(|_| {})?;
-        // From when the first sound has gone to when most of the jet has arrived. Long, since where particles
-        // happen to be decides the pressure at one point by percents.
+        // From the end of the first sound waves to the end of most of the jet. The mean is long, since the pressure at one
+        // point changes by percents with the positions of few particles.
         let (from, to) = (0.05, 0.5);
         let (pressure, force) = (running.probe("stagnation", 0), running.probe("wall", 0));
         session.relative(

@@ -1,11 +1,11 @@
-//! Numbers from series: periods, decay, distances from tables.
+//! Numbers computed from series: periods, slopes, means, distances from tables.
 
 use std::collections::BTreeMap;
 
 use super::running::Series;
 
-/// A table of reference numbers: its columns, in order. Lines that start with # tell its source, the
-/// first of the others names the columns.
+/// Parses a table of reference numbers and returns its columns. Lines that start with # name the source; the first other
+/// line names the columns.
 pub(super) fn table(text: &str) -> Vec<Vec<f64>> {
     let mut lines = text.lines().filter(|line| !line.starts_with('#'));
     let columns = lines.next().map_or(0, |names| names.split(',').count());
@@ -18,7 +18,7 @@ pub(super) fn table(text: &str) -> Vec<Vec<f64>> {
     table
 }
 
-/// Two columns of a table as points.
+/// Parses the first two columns of a table as points.
 pub(super) fn points(text: &str) -> Series {
     let table = table(text);
     match &table[..] {
@@ -27,7 +27,7 @@ pub(super) fn points(text: &str) -> Series {
     }
 }
 
-/// Moments at which a series passes zero, interpolated.
+/// Returns the interpolated times at which a series crosses zero.
 pub(super) fn zero_crossings(series: &[(f64, f64)]) -> Vec<f64> {
     let pairs = series.windows(2);
     pairs
@@ -39,7 +39,7 @@ pub(super) fn zero_crossings(series: &[(f64, f64)]) -> Vec<f64> {
         .collect()
 }
 
-/// Slope and intercept of the line with the least squares through the points.
+/// Returns slope and intercept of the least-squares line through the points.
 pub(super) fn line(points: &[(f64, f64)]) -> (f64, f64) {
     let n = points.len() as f64;
     let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / n;
@@ -48,7 +48,7 @@ pub(super) fn line(points: &[(f64, f64)]) -> (f64, f64) {
     (slope, y - slope * x)
 }
 
-/// Period of an oscillation about zero: twice the slope of its zero crossings.
+/// Returns the period of an oscillation about zero: twice the slope of its zero crossings over their number.
 pub(super) fn period(series: &[(f64, f64)]) -> f64 {
     let crossings = zero_crossings(series);
     let numbered: Vec<(f64, f64)> = crossings
@@ -59,7 +59,7 @@ pub(super) fn period(series: &[(f64, f64)]) -> f64 {
     2.0 * line(&numbered).0
 }
 
-/// The value of a series at `x`, interpolated; that of the nearest end outside.
+/// Returns the interpolated value of a series at `x`; outside, the value of the nearest end.
 pub(super) fn at(series: &[(f64, f64)], x: f64) -> f64 {
     let after = series.partition_point(|point| point.0 < x);
     match (after.checked_sub(1).map(|i| series[i]), series.get(after)) {
@@ -70,7 +70,7 @@ pub(super) fn at(series: &[(f64, f64)], x: f64) -> f64 {
     }
 }
 
-/// Mean of a series over `from .. to`, by trapezoids.
+/// Returns the mean of a series over `from .. to`, by trapezoids.
 pub(super) fn mean(series: &[(f64, f64)], from: f64, to: f64) -> f64 {
     let inside = series.iter().copied().filter(|p| p.0 > from && p.0 < to);
     let ends = |x: f64| core::iter::once((x, at(series, x)));
@@ -82,8 +82,8 @@ pub(super) fn mean(series: &[(f64, f64)], from: f64, to: f64) -> f64 {
     area / (to - from)
 }
 
-/// The shift s in `range` with which `ours`, read at x + s, comes nearest to the `reference`, and the root mean
-/// square of what is left.
+/// Returns the shift s within ± `range` at which `ours`, read at x + s, is closest to `reference`, and the remaining root
+/// mean square difference.
 pub(super) fn shifted(ours: &[(f64, f64)], reference: &[(f64, f64)], range: f64) -> (f64, f64) {
     const STEPS: i32 = 600;
     let left = |shift: f64| root_mean_square(ours, reference, shift);
@@ -95,7 +95,7 @@ pub(super) fn shifted(ours: &[(f64, f64)], reference: &[(f64, f64)], range: f64)
         })
 }
 
-/// Root mean square of the distance of `ours`, read at x + `shift`, from the points of the `reference`.
+/// Returns the root mean square difference between `ours`, read at x + `shift`, and the points of `reference`.
 pub(super) fn root_mean_square(ours: &[(f64, f64)], reference: &[(f64, f64)], shift: f64) -> f64 {
     let squares = reference
         .iter()
@@ -103,12 +103,12 @@ pub(super) fn root_mean_square(ours: &[(f64, f64)], reference: &[(f64, f64)], sh
     (squares.sum::<f64>() / reference.len() as f64).sqrt()
 }
 
-/// Order of convergence from two errors at resolutions a factor apart.
+/// Returns the order of convergence from the errors of two resolutions that differ by `factor`.
 pub(super) fn order(coarse: f64, fine: f64, factor: f64) -> f64 {
     (coarse / fine).abs().ln() / factor.ln()
 }
 
-/// Distance of each place to the nearest other one; places as `d` coordinates each.
+/// Returns the distance of each point to its nearest neighbor; points have `d` coordinates each.
 pub(super) fn to_nearest(x: &[f64], d: usize) -> Vec<f64> {
     let places: Vec<&[f64]> = x.chunks(d).collect();
     let mut cells = BTreeMap::<Vec<i64>, Vec<usize>>::new();
@@ -142,14 +142,14 @@ pub(super) fn to_nearest(x: &[f64], d: usize) -> Vec<f64> {
     places.iter().enumerate().map(nearest).collect()
 }
 
-/// The value that a `part` of the values lies below.
+/// Returns the value below which the share `part` of the values lies.
 pub(super) fn percentile(mut values: Vec<f64>, part: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let index = (part * values.len() as f64) as usize;
     values.get(index).copied().unwrap_or(f64::NAN)
 }
 
-/// Standard deviation of the number of places in a cell of side 1, over cells that hold any, as far as they lie
+/// Returns the standard deviation of the number of points per cell of side 1, over the cells with any points that lie
 /// below `below` on the second axis.
 pub(super) fn spread_a_cell(x: &[f64], d: usize, below: f64) -> f64 {
     let mut counts = BTreeMap::<Vec<i64>, f64>::new();

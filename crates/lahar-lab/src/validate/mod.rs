@@ -1,8 +1,8 @@
-//! Physics cases: scenes against exact solutions, experiments and other programs' own tests.
+//! Physics cases: scenes compared with exact solutions, experiments, and the tests of other programs.
 //!
 //! ```text
-//! case ─► its scene, at one or more resolutions ─► measure ─► findings (reference, ours, error, target)
-//!                                                       └──► plots of ours over the reference
+//! case ─► its scene, at one or more resolutions ─► measure ─┬► findings (reference, ours, error, target)
+//!                                                           └► plots of the measurement and the reference
 //! ```
 //! A case is an ordinary scene file (scenes/validation/) and a function that runs it and measures. Reference
 //! numbers that are not formulas are tables in data/, each with its source in its first lines.
@@ -25,22 +25,29 @@ pub use document::{document, json, text};
 use lahar_scene::error::SceneError;
 use running::{CaseError, Session};
 
-/// A case.
+/// A physics case: a scene and a comparison with a reference.
+///
+/// ```
+/// use lahar_lab::validate::{cases, find};
+///
+/// assert_eq!(find("d1")[0].title, "Dam break of Martin and Moyce, n² = 2");
+/// assert!(cases().count() > 20);
+/// ```
 pub struct Case {
-    /// Its short name: "D1".
+    /// Short name, such as "D1".
     pub id: &'static str,
-    /// What it is.
+    /// Title in reports.
     pub title: &'static str,
-    /// Where its reference is from.
+    /// Source of the reference.
     pub reference: &'static str,
-    /// The scene it runs.
+    /// Name of the scene that it runs.
     pub scene: &'static str,
-    /// Whether it takes many minutes, and is run only when asked for.
+    /// True if it takes many minutes and is run only on demand.
     pub long: bool,
     run: fn(&mut Session<'_>) -> Result<(), CaseError>,
 }
 
-/// All cases, in the order of the report.
+/// Returns all cases, in the order of the report.
 pub fn cases() -> impl Iterator<Item = &'static Case> {
     [
         method::CASES,
@@ -55,7 +62,7 @@ pub fn cases() -> impl Iterator<Item = &'static Case> {
     .flatten()
 }
 
-/// The case with this short name, whatever its capitals, or those that run this scene.
+/// Returns the case with this short name (capitals do not matter), or the cases that run this scene.
 pub fn find(name: &str) -> Vec<&'static Case> {
     let stem = std::path::Path::new(name).file_stem().unwrap_or_default();
     cases()
@@ -63,67 +70,67 @@ pub fn find(name: &str) -> Vec<&'static Case> {
         .collect()
 }
 
-/// How cases are run.
+/// Options of a validation run.
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// The coarser resolution only, and no case that takes longer than seconds.
+    /// Runs the coarser resolution only.
     pub quick: bool,
-    /// Instruction set.
+    /// Instruction set that computes.
     pub isa: Isa,
-    /// Laid over the scenes of all cases.
+    /// Keys and values laid over the scenes of all cases.
     pub set: Vec<(String, String)>,
-    /// A file to take the case's scene from, in place of the built-in one.
+    /// A scene file that replaces the built-in scene of the case.
     pub scene_file: Option<String>,
 }
 
-/// One number of a case.
+/// One measured number of a case, with its reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// The case's short name.
+    /// Short name of the case.
     pub case: &'static str,
-    /// What was measured, with the resolution.
+    /// Quantity that was measured, with the resolution.
     pub quantity: String,
-    /// What it should be.
+    /// Value of the reference.
     pub reference: f64,
-    /// What it is.
+    /// Value that was measured.
     pub ours: f64,
-    /// How far off: of the reference's size unless the quantity says otherwise.
+    /// Error, relative to the reference unless the quantity says otherwise.
     pub error: f64,
-    /// The most that passes; `None`: reported only.
+    /// Largest error that passes; `None` if the number is reported only.
     pub target: Option<f64>,
 }
 
 impl Finding {
-    /// Whether the error is within the target.
+    /// Returns true if the error is within the target.
     pub fn pass(&self) -> bool {
         self.target.is_none_or(|target| self.error.abs() <= target)
     }
 }
 
-/// What a case came to.
+/// The results of a case.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// The numbers.
+    /// All measured numbers.
     pub findings: Vec<Finding>,
-    /// Plots by their file's name, without its ending.
+    /// Plots, each with the name of its file without ending.
     pub plots: Vec<(String, Plot)>,
-    /// What was run, a line each: resolution, particles, substeps.
+    /// The scenes that were run, one line each, and the retries of frames.
     pub runs: Vec<String>,
-    /// What stopped it, if a simulation failed.
+    /// The error, if a simulation failed.
     pub failure: Option<String>,
 }
 
 impl Outcome {
-    /// Whether all is within its targets.
+    /// Returns true if no simulation failed and all numbers meet their targets.
     pub fn pass(&self) -> bool {
         self.failure.is_none() && self.findings.iter().all(Finding::pass)
     }
 }
 
-/// Runs a case; `progress` is told what is run.
+/// Runs a case. `progress` gets a line before each scene.
 ///
 /// # Errors
-/// If its scene, or what is laid over it, is wrong.
+/// If the scene, or a value laid over it, is wrong.
 pub fn run(
     case: &'static Case,
     options: &Options,

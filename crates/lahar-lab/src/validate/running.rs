@@ -1,4 +1,4 @@
-//! A case while it runs: scenes in, findings and plots out.
+//! A case while it runs: it starts scenes and collects findings and plots.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -11,9 +11,9 @@ use crate::plot::{Line, Plot};
 use lahar_scene::error::SceneError;
 use lahar_scene::scene::Scene;
 
-/// What ends a case early.
+/// An error that ends a case early.
 pub(super) enum CaseError {
-    /// The scene, or what is laid over it, is wrong.
+    /// The scene, or a value laid over it, is wrong.
     Scene(Box<SceneError>),
     /// The simulation failed.
     Failure(String),
@@ -31,29 +31,29 @@ impl From<Failure> for CaseError {
     }
 }
 
-/// A case while it runs.
+/// A running case: its options and its results so far.
 pub(super) struct Session<'a> {
     case: &'static Case,
     options: &'a Options,
     progress: &'a dyn Fn(&str),
     outcome: Outcome,
-    /// Frames that were tried again.
+    /// Sentences about frames that were retried.
     retries: Rc<RefCell<Vec<String>>>,
 }
 
-/// A scene that runs.
+/// A scene of a case while it runs.
 pub(super) struct RunningScene {
     pub(super) scene: Scene,
     driver: Driver,
-    /// What probes have read so far.
+    /// Readings of probes so far.
     probes: Vec<ProbeSamples>,
-    /// What it was started by.
+    /// Scene and options, as on the command line.
     command: String,
-    /// The session's.
+    /// The list of retries of the whole case.
     retries: Rc<RefCell<Vec<String>>>,
 }
 
-/// A number over time: (time \[s\], value).
+/// A quantity over time: pairs of time \[s\] and value.
 pub(super) type Series = Vec<(f64, f64)>;
 
 impl<'a> Session<'a> {
@@ -71,18 +71,18 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// What it came to; frames that were tried again are told below what was run.
+    /// Returns the results. The lines about retries follow those about scenes.
     pub(super) fn finish(mut self) -> Outcome {
         self.outcome.runs.append(&mut self.retries.borrow_mut());
         self.outcome
     }
 
-    /// Whether only what takes seconds is to be run.
+    /// Returns true if only the coarser resolution is wanted.
     pub(super) fn quick(&self) -> bool {
         self.options.quick
     }
 
-    /// Of a coarse and a fine resolution those that are wanted.
+    /// Returns the resolutions that are wanted.
     pub(super) fn resolutions<T: Copy>(&self, coarse: T, fine: T) -> Vec<T> {
         if self.quick() {
             vec![coarse]
@@ -91,7 +91,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// The case's scene with `set` laid over it, and what the user laid over that.
+    /// Starts the case's scene with `set` laid over it, and the user's values over both.
     pub(super) fn start(&mut self, set: &[(&str, String)]) -> Result<RunningScene, CaseError> {
         let scene = self
             .options
@@ -101,7 +101,7 @@ impl<'a> Session<'a> {
         self.start_scene(scene, set)
     }
 
-    /// Another scene than the case's own.
+    /// Starts a scene other than the case's own.
     pub(super) fn start_scene(
         &mut self,
         scene: &str,
@@ -131,7 +131,7 @@ impl<'a> Session<'a> {
         })
     }
 
-    /// `ours` against `reference`, the difference relative to the reference.
+    /// Compares `ours` with `reference`; the error is relative.
     pub(super) fn relative(&mut self, quantity: &str, reference: f64, ours: f64, target: f64) {
         self.push(
             quantity,
@@ -142,27 +142,27 @@ impl<'a> Session<'a> {
         );
     }
 
-    /// `ours` against `reference`, the difference as it is.
+    /// Compares `ours` with `reference`; the error is absolute.
     pub(super) fn absolute(&mut self, quantity: &str, reference: f64, ours: f64, target: f64) {
         self.push(quantity, reference, ours, ours - reference, Some(target));
     }
 
-    /// A deviation from 0 that is given already.
+    /// Adds a deviation from 0.
     pub(super) fn at_most(&mut self, quantity: &str, ours: f64, target: f64) {
         self.push(quantity, 0.0, ours, ours, Some(target));
     }
 
-    /// A number that must not be below a bound; what it lacks is the error.
+    /// Compares a number with a lower bound; the error is the amount by which it is below.
     pub(super) fn at_least(&mut self, quantity: &str, bound: f64, ours: f64) {
-        let lacks = if ours.is_nan() {
+        let deficit = if ours.is_nan() {
             ours
         } else {
             (bound - ours).max(0.0)
         };
-        self.push(quantity, bound, ours, lacks, Some(0.0));
+        self.push(quantity, bound, ours, deficit, Some(0.0));
     }
 
-    /// A number without a target.
+    /// Adds a number without a target.
     pub(super) fn report(&mut self, quantity: &str, reference: f64, ours: f64) {
         self.push(quantity, reference, ours, ours - reference, None);
     }
@@ -178,7 +178,7 @@ impl<'a> Session<'a> {
         });
     }
 
-    /// Adds a plot; `name` is joined to the case's.
+    /// Adds a plot; its file is called by the case and `name`.
     pub(super) fn plot(
         &mut self,
         name: &str,
@@ -202,21 +202,21 @@ impl<'a> Session<'a> {
 }
 
 impl RunningScene {
-    /// The simulation.
+    /// Returns the simulation.
     pub(super) fn simulation(&self) -> &dyn Simulate {
         self.driver.simulation()
     }
 
-    /// The simulation, for substeps of its own and for diagnostics.
+    /// Returns the simulation for single substeps and for diagnostics.
     pub(super) fn simulation_mut(&mut self) -> &mut dyn Simulate {
         self.driver.simulation_mut()
     }
 
-    /// Runs to `time` \[s\]. Substeps that fail are taken again from here with a shorter dt.
+    /// Runs to `time` \[s\]. If a substep fails, all are retried with a shorter dt.
     pub(super) fn advance_to(&mut self, time: f64) -> Result<(), CaseError> {
         let (retries, command) = (&self.retries, &self.command);
-        let told = |retry: &Retry| retries.borrow_mut().push(format!("{command}: {retry}"));
-        let frame = (self.driver.advance_to(time, told))
+        let note = |retry: &Retry| retries.borrow_mut().push(format!("{command}: {retry}"));
+        let frame = (self.driver.advance_to(time, note))
             .map_err(|failure| CaseError::Failure(Retry::in_vain(&failure)))?;
         self.keep_probes(frame.probes);
         Ok(())
@@ -231,8 +231,8 @@ impl RunningScene {
                     return Ok(());
                 }
                 Event::Retry(retry) => {
-                    let told = format!("{}: {retry}", self.command);
-                    self.retries.borrow_mut().push(told);
+                    let sentence = format!("{}: {retry}", self.command);
+                    self.retries.borrow_mut().push(sentence);
                 }
                 Event::Failed(failure) => return Err(CaseError::Failure(Retry::in_vain(&failure))),
                 Event::Unfinished => {}
@@ -240,7 +240,7 @@ impl RunningScene {
         }
     }
 
-    /// Runs frame by frame to the scene's end; `look` sees the simulation at the start and after each.
+    /// Runs frame by frame to the scene's end. `look` is called at the start and after each frame.
     pub(super) fn frames(
         &mut self,
         mut look: impl FnMut(&mut dyn Simulate),
@@ -253,24 +253,24 @@ impl RunningScene {
         Ok(())
     }
 
-    /// Runs to the scene's end; a row of totals a frame, the start's first.
+    /// Runs to the scene's end. Returns the diagnostics of the start and of each frame.
     pub(super) fn rows(&mut self) -> Result<Vec<Diagnostics>, CaseError> {
         let mut rows = Vec::new();
         self.frames(|simulation| rows.push(simulation.diagnostics()))?;
         Ok(rows)
     }
 
-    fn keep_probes(&mut self, taken: Vec<ProbeSamples>) {
+    fn keep_probes(&mut self, samples: Vec<ProbeSamples>) {
         if self.probes.is_empty() {
-            self.probes = taken;
+            self.probes = samples;
             return;
         }
-        for (all, new) in self.probes.iter_mut().zip(taken) {
+        for (all, new) in self.probes.iter_mut().zip(samples) {
             all.samples.extend(new.samples);
         }
     }
 
-    /// One number of what a probe has read; nothing if there is no such probe.
+    /// Returns one column of a probe's readings; empty if there is no such probe.
     pub(super) fn probe(&mut self, name: &str, column: usize) -> Series {
         let latest = self.simulation_mut().take_probe_samples();
         self.keep_probes(latest);
@@ -281,13 +281,13 @@ impl RunningScene {
     }
 }
 
-/// The numbers of a field, particle after particle by ascending id.
+/// Returns the numbers of a field, one particle after the other by ascending id.
 pub(super) fn field(simulation: &dyn Simulate, field: Field) -> Vec<f64> {
     let snapshot = simulation.snapshot(&[field]);
     snapshot.get(field).map(Data::to_f64).unwrap_or_default()
 }
 
-/// Σ m v_axis f(x) / Σ m f(x)²: how much of a mode the velocities hold.
+/// Returns the amplitude of the mode f in the velocities: Σ m v_axis f(x) / Σ m f(x)².
 pub(super) fn mode(simulation: &dyn Simulate, axis: usize, f: impl Fn(&[f64]) -> f64) -> f64 {
     let d = simulation.dimension();
     let fields = [Field::Position, Field::Velocity, Field::Mass];

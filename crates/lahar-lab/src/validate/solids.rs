@@ -26,7 +26,7 @@ pub(super) const CASES: &[Case] = &[
     Case {
         id: "E3",
         title: "Cantilevers under their weight",
-        reference: "finite elements (Sadeghirad, Brannon & Burghardt 2011, digitised), and the inextensible elastica",
+        reference: "finite elements (Sadeghirad, Brannon & Burghardt 2011, digitized), and the inextensible elastica",
         scene: "e3-cantilever",
         long: false,
         run: e3,
@@ -77,7 +77,7 @@ fn e1(session: &mut Session<'_>) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// The order of convergence, where there are two resolutions, one twice as fine.
+/// Adds the order of convergence if there are two resolutions, one twice as fine.
 fn report_order(session: &mut Session<'_>, of: &str, errors: &[f64]) {
     if let [coarse, fine] = errors {
         session.report(
@@ -131,14 +131,14 @@ fn e3(session: &mut Session<'_>) -> Result<(), CaseError> {
         let mut start = None;
         running.frames(|simulation| {
             let x = field(simulation, Field::Position);
-            // Not there any more if the beam has broken.
+            // The particle is missing if the beam has broken.
             if let Some(&y) = x.get(2 * corner + 1) {
                 series.push((simulation.time(), y - *start.get_or_insert(y)));
             }
         })?;
         let quantity = format!("deepest displacement of the corner [m], H/dx = {cells}");
         session.relative(&quantity, deepest(&reference), deepest(&series), target);
-        // When it comes up again, half way.
+        // The time at which the corner has come up half way again.
         let half = |series: &Series| {
             let bottom = deepest(series);
             let lowest = series.iter().position(|p| p.1 == bottom).unwrap_or(0);
@@ -158,6 +158,11 @@ fn e3(session: &mut Session<'_>) -> Result<(), CaseError> {
     if session.quick() {
         return Ok(());
     }
+    elastica(session)
+}
+
+/// The second part of E3: a slender cantilever at rest.
+fn elastica(session: &mut Session<'_>) -> Result<(), CaseError> {
     let elastica = table(include_str!(
         "../../data/solid_cantilever_selfweight_elastica.csv"
     ));
@@ -169,7 +174,7 @@ fn e3(session: &mut Session<'_>) -> Result<(), CaseError> {
     let start = field(running.simulation(), Field::Position);
     running.frames(|_| {})?;
     let end = field(running.simulation(), Field::Position);
-    // Means over the last two columns of particles, half a cell apart, carried on to the end of the beam.
+    // The means over the last two rows of particles, half a cell apart, are extrapolated to the end of the beam.
     let dx = 0.00625;
     let column = |from: f64, to: f64, axis: usize| {
         let inside = start
@@ -201,7 +206,7 @@ fn e3(session: &mut Session<'_>) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Index (by id) of the particle nearest to a place.
+/// Returns the index (by id) of the particle nearest to a point.
 fn nearest(simulation: &dyn Simulate, place: [f64; 2]) -> usize {
     let x = field(simulation, Field::Position);
     let distance = |x: &[f64]| (x[0] - place[0]).hypot(x[1] - place[1]);

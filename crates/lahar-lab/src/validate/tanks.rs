@@ -15,12 +15,16 @@ pub(super) const CASES: &[Case] = &[Case {
     run: f4,
 }];
 
-/// Depth of the water \[m\] and gravity \[m/s²\].
+/// Depth of the water \[m\].
 const DEPTH: f64 = 1.0;
+
+/// Gravity \[m/s²\].
 const GRAVITY: f64 = 9.81;
 
-/// Substeps of the full case, and of the quick one.
+/// Substeps of the full case.
 const SUBSTEPS: u64 = 100_000;
+
+/// Substeps of the quick case.
 const QUICK_SUBSTEPS: u64 = 10_000;
 
 fn f4(session: &mut Session<'_>) -> Result<(), CaseError> {
@@ -68,7 +72,7 @@ fn f4(session: &mut Session<'_>) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// What a tank at rest shows over the substeps of the case.
+/// Measures forces, pressures, speeds and volumes of a tank at rest.
 fn at_rest(
     session: &mut Session<'_>,
     mut running: RunningScene,
@@ -91,7 +95,7 @@ fn at_rest(
     let c = running.scene.materials[0].wave_speed;
     let base = 1000.0 * c * c * (GRAVITY * DEPTH / (c * c)).exp_m1();
     let end = running.simulation().time();
-    // Each reading is the mean force since the one before, so that their mean leaves nothing out.
+    // Each reading is the mean force since the one before, so that their mean covers the whole time.
     let force = running.probe("floor", 1);
     let readings = force.iter().filter(|p| p.0 > 0.1 * end);
     let force = readings.clone().map(|p| -p.1).sum::<f64>() / readings.count() as f64;
@@ -133,8 +137,8 @@ fn at_rest(
     Ok(())
 }
 
-/// How evenly particles lie: the first percentile of the distance to the nearest other one, in cells, and the
-/// spread of the number of particles in a cell of the lower nine tenths.
+/// Returns two measures of how evenly particles are spread: the first percentile of the distance to the nearest neighbor
+/// \[cells\], and the standard deviation of the number of particles per cell in the lower nine tenths.
 fn evenness(running: &RunningScene) -> [f64; 2] {
     let simulation: &dyn Simulate = running.simulation();
     let (d, dx) = (simulation.dimension(), simulation.dx());
@@ -142,15 +146,16 @@ fn evenness(running: &RunningScene) -> [f64; 2] {
         .iter()
         .map(|x| x / dx)
         .collect();
-    // Particles are seeded in halves of cells; cells that cut across those see how they lie in them.
+    // Particles are seeded in halves of cells. Shifted cells cut across those, and so show the spread inside them.
     let across: Vec<f64> = x.iter().map(|x| x + 0.2).collect();
     let spread = spread_a_cell(&across, d, 0.9 * DEPTH / dx);
     [percentile(to_nearest(&x, d), 0.01), spread]
 }
 
-/// Changes below this are the rounding of positions and the water's own compression \[cells; particles a cell\].
+/// Changes that rounding of positions and compression of the water cause \[cells; particles per cell\].
 const UNCHANGED: f64 = 1e-3;
 
+/// Compares the measures of evenness before and after.
 fn clumping(session: &mut Session<'_>, before: [f64; 2], after: [f64; 2], what: &str) {
     session.at_least(
         &format!("nearest neighbors, first percentile / dx, {what}"),

@@ -1,4 +1,4 @@
-//! F1, F2, F5, F6: whirls, shear, gravity waves, sound.
+//! F1, F2, F5, F6: vortices, shear waves, gravity waves, sound.
 
 use core::f64::consts::{PI, TAU};
 
@@ -160,7 +160,7 @@ fn f5(session: &mut Session<'_>) -> Result<(), CaseError> {
                 ("bodies.water.sampling", format!("\"{sampling}\"")),
             ])?;
             running.frames(|_| {})?;
-            // Half the difference: up and down of the whole tank drops out.
+            // Half the difference, in which vertical motion of the whole tank cancels.
             let (left, middle) = (running.probe("left", 0), running.probe("middle", 0));
             let wave: Series = left
                 .iter()
@@ -203,7 +203,7 @@ fn f5(session: &mut Session<'_>) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// Means over ± `width` \[s\].
+/// Smooths a series by means over ± `width` \[s\].
 fn smooth(series: &[(f64, f64)], width: f64) -> Series {
     let mean = |t: f64| {
         let near = series.iter().filter(|p| (p.0 - t).abs() <= width);
@@ -245,7 +245,7 @@ fn f6(session: &mut Session<'_>) -> Result<(), CaseError> {
                 wave.push((simulation.time(), part));
             })?;
             let ours = period(&wave);
-            // Of the largest within a period.
+            // The amplitude is the largest value within a period.
             let highest = |from: f64| {
                 let inside = wave.iter().filter(|p| p.0 >= from && p.0 <= from + 0.2);
                 inside.map(|p| p.1.abs()).fold(0.0, f64::max)
