@@ -27,13 +27,13 @@ pub(crate) fn dot(a: V3, b: V3) -> f64 {
 pub(crate) fn length(a: V3) -> f64 {
     dot(a, a).sqrt()
 }
-fn cross(a: V3, b: V3) -> V3 {
+pub(crate) fn cross(a: V3, b: V3) -> V3 {
     core::array::from_fn(|i| {
         let (j, k) = ((i + 1) % 3, (i + 2) % 3);
         a[j] * b[k] - a[k] * b[j]
     })
 }
-fn normalize(a: V3) -> V3 {
+pub(crate) fn normalize(a: V3) -> V3 {
     scale(a, 1.0 / length(a).max(f64::MIN_POSITIVE))
 }
 

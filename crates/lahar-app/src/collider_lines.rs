@@ -1,20 +1,20 @@
-//! Colliders as lines: their edges, and in 2D a hatching that fills them.
+//! Draws colliders as lines: their edges and, in 2D, a hatching that fills them.
 
 use lahar::geometry::Primitive;
 use lahar_io::image::COLLIDER;
 use lahar_scene::scene::ColliderInfo;
 
-use crate::camera::{V3, add, scale, sub};
+use crate::camera::{V3, add, cross, length, normalize, scale, sub};
 use crate::renderer::Line;
 
-/// Sides of a circle.
+/// Number of sides of a circle, and of parts of a segment.
 const SIDES: usize = 48;
 
 /// Distance of the lines of a hatching, in parts of the scene's longer side.
 const HATCHING: f64 = 1.0 / 80.0;
 
-/// The lines of `colliders` at `time` \[s\] in the box `extent` of a scene of `dimension`, relative to
-/// `origin`.
+/// The lines of `colliders` at `time` \[s\], in a scene of this dimension within the box `extent` \[m\], relative to
+/// `origin` \[m\].
 pub(crate) fn collider_lines(
     colliders: &[ColliderInfo],
     time: f64,
@@ -26,19 +26,19 @@ pub(crate) fn collider_lines(
     for info in colliders {
         let placed = info.collider.at(time);
         let [r, g, b] = info.color.unwrap_or(COLLIDER);
-        let mut draw = |a: V3, b_: V3, half_width: f32, opacity: u8| {
+        let mut draw = |start: V3, end: V3, half_width: f32, opacity: u8| {
             let local = |p: V3| sub(p, origin).map(|x| x as f32);
             lines.push(Line {
-                start: local(a),
+                start: local(start),
                 half_width,
-                end: local(b_),
+                end: local(end),
                 color: [r, g, b, opacity],
             });
         };
-        for solid in placed.primitives() {
-            for path in outline(&solid, dimension, extent) {
+        for primitive in placed.primitives() {
+            for path in outline(&primitive, dimension, extent) {
                 for pair in path.windows(2) {
-                    // What is inside of another solid of the same collider is no edge.
+                    // An edge inside another primitive of the same collider is not drawn.
                     let middle = scale(add(pair[0], pair[1]), 0.5);
                     let (distance, _) = placed.distance(middle);
                     if distance > -1e-3 * longest(extent) {
@@ -49,25 +49,26 @@ pub(crate) fn collider_lines(
         }
         if dimension == 2 {
             let inside = |p: V3| placed.distance(p).0 < 0.0;
-            for [a, b_] in hatching(extent, inside) {
-                draw(a, b_, 0.8, 150);
+            for [start, end] in hatching(extent, inside) {
+                draw(start, end, 0.8, 150);
             }
         }
     }
     lines
 }
 
+/// The longest side of a box.
 fn longest((min, max): (V3, V3)) -> f64 {
     sub(max, min).into_iter().fold(0.0, f64::max)
 }
 
-/// Slanted lines over the box, where `inside`.
+/// Slanted segments over the box, where `inside` is true.
 fn hatching((min, max): (V3, V3), inside: impl Fn(V3) -> bool) -> Vec<[V3; 2]> {
     let step = HATCHING * longest((min, max));
     let [width, height, _] = sub(max, min);
     let mut lines = vec![];
     for k in 1..((width + height) / step) as usize {
-        // x + y is the same along a line.
+        // Along a line, x + y is constant.
         let sum = k as f64 * step;
         let (low, high) = ((sum - height).max(0.0), sum.min(width));
         let place = |x: f64| [min[0] + x, min[1] + sum - x, 0.0];
@@ -89,58 +90,13 @@ fn hatching((min, max): (V3, V3), inside: impl Fn(V3) -> bool) -> Vec<[V3; 2]> {
     lines
 }
 
-/// Edges of a solid, as paths.
-fn outline(solid: &Primitive<3>, dimension: usize, extent: (V3, V3)) -> Vec<Vec<V3>> {
-    match solid {
-        Primitive::Box { center, half, axes } => {
-            let corner = |bits: usize| {
-                (0..dimension).fold(*center, |at, i| {
-                    let way = if bits >> i & 1 == 1 { 1.0 } else { -1.0 };
-                    add(at, scale(axes[i], way * half[i]))
-                })
-            };
-            let mut edges = vec![];
-            for bits in 0..1_usize << dimension {
-                for axis in 0..dimension {
-                    if bits >> axis & 1 == 0 {
-                        edges.push(divided(corner(bits), corner(bits | 1 << axis)));
-                    }
-                }
-            }
-            edges
-        }
-        Primitive::Ball { center, radius } => {
-            let unit = |i: usize| core::array::from_fn(|j| f64::from(i == j));
-            let planes: &[(usize, usize)] = if dimension == 2 {
-                &[(0, 1)]
-            } else {
-                &[(0, 1), (1, 2), (2, 0)]
-            };
-            planes
-                .iter()
-                .map(|&(i, j)| circle(*center, unit(i), unit(j), *radius))
-                .collect()
-        }
+/// The edges of a primitive, as paths.
+fn outline(primitive: &Primitive<3>, dimension: usize, extent: (V3, V3)) -> Vec<Vec<V3>> {
+    match primitive {
+        Primitive::Box { center, half, axes } => box_edges(*center, *half, *axes, dimension),
+        Primitive::Ball { center, radius } => great_circles(*center, *radius, dimension),
         Primitive::HalfSpace { point, normal } => {
-            let [side, other] = across(*normal, dimension);
-            let reach = longest(extent) * 3.0;
-            let corners: Vec<V3> = if dimension == 2 {
-                vec![
-                    add(*point, scale(side, -reach)),
-                    add(*point, scale(side, reach)),
-                ]
-            } else {
-                [
-                    (1.0, 1.0),
-                    (1.0, -1.0),
-                    (-1.0, -1.0),
-                    (-1.0, 1.0),
-                    (1.0, 1.0),
-                ]
-                .iter()
-                .map(|(a, b)| add(*point, add(scale(side, a * reach), scale(other, b * reach))))
-                .collect()
-            };
+            let corners = half_space_corners(*point, *normal, dimension, longest(extent) * 3.0);
             within(&corners, extent)
         }
         Primitive::Polygon { points } => (0..points.len())
@@ -151,50 +107,109 @@ fn outline(solid: &Primitive<3>, dimension: usize, extent: (V3, V3)) -> Vec<Vec<
             to,
             radius,
             round,
-        } => {
-            let axis = sub(*to, *from);
-            let [side, other] = across(axis, dimension);
-            let sides: Vec<V3> = if dimension == 2 {
-                vec![side, scale(side, -1.0)]
-            } else {
-                vec![side, other, scale(side, -1.0), scale(other, -1.0)]
-            };
-            let mut paths: Vec<Vec<V3>> = sides
-                .iter()
-                .map(|side| {
-                    let out = scale(*side, *radius);
-                    divided(add(*from, out), add(*to, out))
-                })
-                .collect();
-            let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let along = if length > 0.0 {
-                scale(axis, 1.0 / length)
-            } else {
-                other
-            };
-            for end in [*from, *to] {
-                if dimension == 3 {
-                    paths.push(circle(end, side, other, *radius));
-                }
-                if *round {
-                    paths.push(circle(end, side, along, *radius));
-                    if dimension == 3 {
-                        paths.push(circle(end, other, along, *radius));
-                    }
-                }
-            }
-            paths
-        }
+        } => rod_edges([*from, *to], *radius, *round, dimension),
     }
 }
 
-/// A segment in pieces, so that parts of it can be left out.
+fn box_edges(center: V3, half: V3, axes: [V3; 3], dimension: usize) -> Vec<Vec<V3>> {
+    // Bit i of a corner's number is its side along axis i.
+    let corner = |bits: usize| {
+        (0..dimension).fold(center, |at, i| {
+            let sign = if bits >> i & 1 == 1 { 1.0 } else { -1.0 };
+            add(at, scale(axes[i], sign * half[i]))
+        })
+    };
+    let mut edges = vec![];
+    for bits in 0..1_usize << dimension {
+        for axis in 0..dimension {
+            if bits >> axis & 1 == 0 {
+                edges.push(divided(corner(bits), corner(bits | 1 << axis)));
+            }
+        }
+    }
+    edges
+}
+
+/// One circle in 2D; in 3D, one in each plane of two axes.
+fn great_circles(center: V3, radius: f64, dimension: usize) -> Vec<Vec<V3>> {
+    let unit = |i: usize| core::array::from_fn(|j| f64::from(i == j));
+    let planes: &[(usize, usize)] = if dimension == 2 {
+        &[(0, 1)]
+    } else {
+        &[(0, 1), (1, 2), (2, 0)]
+    };
+    planes
+        .iter()
+        .map(|&(i, j)| circle(center, unit(i), unit(j), radius))
+        .collect()
+}
+
+/// A part of the surface that reaches beyond the scene: a segment in 2D, a square in 3D.
+fn half_space_corners(point: V3, normal: V3, dimension: usize, reach: f64) -> Vec<V3> {
+    let [side, other] = across(normal, dimension);
+    let corners: &[(f64, f64)] = if dimension == 2 {
+        &[(-1.0, 0.0), (1.0, 0.0)]
+    } else {
+        &[
+            (1.0, 1.0),
+            (1.0, -1.0),
+            (-1.0, -1.0),
+            (-1.0, 1.0),
+            (1.0, 1.0),
+        ]
+    };
+    let corner = |(a, b): &(f64, f64)| {
+        let along_surface = add(scale(side, a * reach), scale(other, b * reach));
+        add(point, along_surface)
+    };
+    corners.iter().map(corner).collect()
+}
+
+/// Lines along a cylinder or capsule, and circles at its ends.
+fn rod_edges(ends: [V3; 2], radius: f64, round: bool, dimension: usize) -> Vec<Vec<V3>> {
+    let [from, to] = ends;
+    let axis = sub(to, from);
+    let [side, other] = across(axis, dimension);
+    let sides: Vec<V3> = if dimension == 2 {
+        vec![side, scale(side, -1.0)]
+    } else {
+        vec![side, other, scale(side, -1.0), scale(other, -1.0)]
+    };
+    let mut paths: Vec<Vec<V3>> = sides
+        .iter()
+        .map(|side| {
+            let out = scale(*side, radius);
+            divided(add(from, out), add(to, out))
+        })
+        .collect();
+    let length = length(axis);
+    let along = if length > 0.0 {
+        scale(axis, 1.0 / length)
+    } else {
+        other
+    };
+    for end in ends {
+        if dimension == 3 {
+            paths.push(circle(end, side, other, radius));
+        }
+        if round {
+            paths.push(circle(end, side, along, radius));
+            if dimension == 3 {
+                paths.push(circle(end, other, along, radius));
+            }
+        }
+    }
+    paths
+}
+
+/// Divides a segment, so that parts of it can be left out.
 fn divided(a: V3, b: V3) -> Vec<V3> {
     (0..=SIDES)
         .map(|i| add(a, scale(sub(b, a), i as f64 / SIDES as f64)))
         .collect()
 }
 
+/// The circle about `center` in the plane of the unit vectors `x` and `y`.
 fn circle(center: V3, x: V3, y: V3, radius: f64) -> Vec<V3> {
     (0..=SIDES)
         .map(|i| {
@@ -204,19 +219,8 @@ fn circle(center: V3, x: V3, y: V3, radius: f64) -> Vec<V3> {
         .collect()
 }
 
-/// Two unit vectors across `axis`; in 2D the first lies in the plane.
+/// Two unit vectors perpendicular to `axis`. In 2D the first lies in the plane.
 fn across(axis: V3, dimension: usize) -> [V3; 2] {
-    let cross = |a: V3, b: V3| {
-        [
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ]
-    };
-    let unit = |v: V3| {
-        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        scale(v, 1.0 / length.max(f64::MIN_POSITIVE))
-    };
     let helper = if dimension == 2 || axis[2].abs() < axis[0].abs().max(axis[1].abs()) {
         [0.0, 0.0, 1.0]
     } else {
@@ -225,11 +229,11 @@ fn across(axis: V3, dimension: usize) -> [V3; 2] {
     if axis == [0.0; 3] {
         return [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     }
-    let side = unit(cross(axis, helper));
-    [side, unit(cross(axis, side))]
+    let side = normalize(cross(axis, helper));
+    [side, normalize(cross(axis, side))]
 }
 
-/// The part of a path that is in the box.
+/// The parts of a path that are in the box.
 fn within(path: &[V3], (min, max): (V3, V3)) -> Vec<Vec<V3>> {
     let inside = |p: &V3| (0..3).all(|i| (min[i] - 1e-9..=max[i] + 1e-9).contains(&p[i]));
     let fine: Vec<V3> = path
