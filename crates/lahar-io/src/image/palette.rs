@@ -1,6 +1,8 @@
 //! Colors of materials, bodies and scales, and the conversion between sRGB and linear light. Fluids, jelly and snow have
 //! the colors of the Taichi examples; the others match them.
 
+use lahar_scene::scene::Look;
+
 /// A color: red, green and blue in sRGB.
 pub type Color = [u8; 3];
 
@@ -61,10 +63,11 @@ pub fn model_colors(models: &[&str]) -> Vec<Color> {
     models
         .iter()
         .map(|model| {
-            let (kind, colors): (usize, &[Color]) = match *model {
-                "fluid" => (0, &FLUIDS),
-                "none" | "snow" | "sand" => (2, &GRAINS),
-                _ => (1, &SOLIDS),
+            let (kind, colors): (usize, &[Color]) = match Look::of_model(model) {
+                Some(Look::Liquid) => (0, &FLUIDS),
+                // A run of a later version may name a model that is not known here.
+                Some(Look::Solid) | None => (1, &SOLIDS),
+                Some(Look::Dust | Look::Snow) => (2, &GRAINS),
             };
             let nth = seen[kind];
             seen[kind] += 1;

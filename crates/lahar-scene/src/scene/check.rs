@@ -3,10 +3,11 @@
 
 use super::document::{Entry, Node, Sources, Span, Table, Value, literal, literal_table};
 use super::formula::Of;
-use super::keys::{Key, Kind, MODELS, MODULI, SCENE, SECTIONS, Section, WhenAbsent, model_section};
-use super::preset;
+use super::formula::read_formula;
+use super::key::{Key, Kind, Section, WhenAbsent, color};
+use super::keys::{SCENE, sections};
+use super::material::{PRESET_NAMES, Preset, SceneModel, moduli};
 use crate::error::{SceneError, nearest};
-use crate::expression::Expression;
 
 /// Checks and completes the scene `root`; returns its dimension.
 pub(crate) fn check(sources: &Sources, root: &mut Table) -> Result<usize, SceneError> {
@@ -38,18 +39,15 @@ pub(crate) fn check(sources: &Sources, root: &mut Table) -> Result<usize, SceneE
 }
 
 /// The model that a material names, itself or by its preset.
-pub(crate) fn model_of(material: &Table) -> Option<&str> {
+pub(crate) fn model_of(material: &Table) -> Option<&'static SceneModel> {
     let text = |key: &str| match &material.get(key)?.value {
         Value::Text(text) => Some(text.as_str()),
         _ => None,
     };
-    text("model").or_else(|| {
-        let keys = preset::find(text("preset")?)?.keys;
-        MODELS
-            .iter()
-            .copied()
-            .find(|model| keys.starts_with(&format!("model = \"{model}\"")))
-    })
+    match text("model") {
+        Some(model) => SceneModel::find(model),
+        None => Preset::find(text("preset")?).map(|(_, model)| model),
+    }
 }
 
 /// What to write instead of an expression where there must be numbers.
@@ -64,30 +62,6 @@ fn no_formulas(kind: Kind, dimension: usize) -> &'static str {
         }
         _ => "it takes numbers only; gravity, velocity and forces take expressions",
     }
-}
-
-/// An expression of a scene; what is wrong with it is pointed at.
-pub(crate) fn read_formula(
-    sources: &Sources,
-    node: &Node,
-    of: Of,
-    dimension: usize,
-) -> Result<Expression, SceneError> {
-    let text = match &node.value {
-        Value::Text(text) => text,
-        other => {
-            let number = other.as_number().unwrap_or(f64::NAN);
-            return Ok(Expression::number(number));
-        }
-    };
-    of.parse(text, dimension).map_err(|error| {
-        let span = sources.within(node.span, text, error.place);
-        let found = sources.error(span, error.message);
-        match error.hint {
-            Some(hint) => found.hint(hint),
-            None => found,
-        }
-    })
 }
 
 struct Check<'a> {
@@ -472,14 +446,11 @@ impl Check<'_> {
 
     /// Lays the preset under the material and checks it by its model.
     fn material(&self, material: &mut Table, span: Span) -> Result<(), SceneError> {
-        let mut model = None;
-        for name in ["model", "preset"] {
+        for (name, words) in [("model", lahar::Model::NAMES), ("preset", PRESET_NAMES)] {
             if let Some(node) = material.get(name) {
-                match (&node.value, super::keys::NONE.key(name).map(|key| key.kind)) {
-                    (Value::Text(text), Some(Kind::Word(words))) => {
-                        self.word(text, words, node.span, name)?
-                    }
-                    (other, _) => {
+                match &node.value {
+                    Value::Text(text) => self.word(text, words, node.span, name)?,
+                    other => {
                         return Err(self.sources.error(
                             node.span,
                             format!(
@@ -496,8 +467,8 @@ impl Check<'_> {
             span: preset_span,
         }) = material.get("preset").cloned()
         {
-            let base = preset::find(&text)
-                .and_then(|preset| literal_table(preset.keys, preset_span))
+            let base = Preset::find(&text)
+                .and_then(|(preset, _)| literal_table(preset.keys, preset_span))
                 .unwrap_or_default();
             let same = |key: &str| match (
                 material.get(key).map(|node| &node.value),
@@ -522,18 +493,15 @@ impl Check<'_> {
                 }
             }
         }
-        if let Some(text) = model_of(material) {
-            model = model_section(text);
-        }
-        match model {
-            Some(section) => self.section(material, section, span),
+        match model_of(material) {
+            Some(model) => self.section(material, model.section, span),
             None => Err(self
                 .sources
                 .error(span, "this material has no \"model\"")
                 .hint(format!(
                     "choose from: {}; or give a preset: {}",
-                    MODELS.join(", "),
-                    preset::NAMES.join(", ")
+                    lahar::Model::NAMES.join(", "),
+                    PRESET_NAMES.join(", ")
                 ))),
         }
     }
@@ -542,8 +510,8 @@ impl Check<'_> {
 /// Moduli of a preset that the material says by another pair.
 fn replaced_moduli(material: &Table, base: &Table) -> Vec<&'static str> {
     let given = |key: &&str| material.get(key).is_some() && base.get(key).is_none();
-    if MODULI.as_flattened().iter().any(given) {
-        MODULI.as_flattened().to_vec()
+    if moduli().any(|key| given(&key)) {
+        moduli().collect()
     } else {
         Vec::new()
     }
@@ -571,17 +539,16 @@ fn unit(key: &Key) -> String {
 
 /// Where a key is known that is not known in `here`.
 fn places(name: &str, here: &Section) -> Option<String> {
-    let knows = |section: &&&Section| {
+    let knows = |section: &&Section| {
         section
             .key(name)
             .is_some_and(|key| !matches!(key.kind, Kind::Later))
     };
     // Of a material, other models tell more than tables of other things.
-    let kin = |section: &&&Section| {
+    let kin = |section: &&Section| {
         section.name.starts_with("material: ") && here.name.starts_with("material: ")
     };
-    let models: Vec<&str> = SECTIONS
-        .iter()
+    let models: Vec<&str> = sections()
         .filter(kin)
         .filter(knows)
         .filter_map(|section| section.name.strip_prefix("material: "))
@@ -589,19 +556,10 @@ fn places(name: &str, here: &Section) -> Option<String> {
     if !models.is_empty() {
         return Some(format!("to model {}", models.join(", ")));
     }
-    let other = SECTIONS.iter().find(knows)?;
+    let other = sections().find(knows)?;
     Some(if other.name == SCENE.name {
         other.header.to_owned()
     } else {
         format!("in {}", other.header)
     })
-}
-
-/// The colour "#rrggbb".
-pub(crate) fn color(text: &str) -> Option<[u8; 3]> {
-    let hex = text
-        .strip_prefix('#')
-        .filter(|hex| hex.len() == 6 && hex.is_ascii())?;
-    let part = |at: usize| u8::from_str_radix(&hex[at..at + 2], 16).ok();
-    Some([part(0)?, part(2)?, part(4)?])
 }

@@ -1,5 +1,7 @@
 //! Vectors of a scene that are numbers or formulas: gravity, forces, velocities at the start.
 
+use super::document::{Node, Sources, Value};
+use crate::error::SceneError;
 use crate::expression::{BLOCK, Expression};
 use lahar::AccelerationField;
 
@@ -114,4 +116,28 @@ impl<const D: usize> AccelerationField<D> for Formulas<D> {
             .iter()
             .any(|formula| (0..D).any(|i| formula.uses(START + i)))
     }
+}
+
+/// An expression of a scene; what is wrong with it is pointed at.
+pub(crate) fn read_formula(
+    sources: &Sources,
+    node: &Node,
+    of: Of,
+    dimension: usize,
+) -> Result<Expression, SceneError> {
+    let text = match &node.value {
+        Value::Text(text) => text,
+        other => {
+            let number = other.as_number().unwrap_or(f64::NAN);
+            return Ok(Expression::number(number));
+        }
+    };
+    of.parse(text, dimension).map_err(|error| {
+        let span = sources.within(node.span, text, error.place);
+        let found = sources.error(span, error.message);
+        match error.hint {
+            Some(hint) => found.hint(hint),
+            None => found,
+        }
+    })
 }

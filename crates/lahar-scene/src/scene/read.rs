@@ -1,9 +1,9 @@
 //! Typed access to a checked table. Kinds and defaults were seen to by `check`: what is absent here
 //! has no default.
 
-use super::check::read_formula;
 use super::document::{Node, Sources, Span, Table, Value};
-use super::formula::{Formulas, Of};
+use super::formula::{Formulas, Of, read_formula};
+use super::key::color;
 use crate::error::SceneError;
 
 /// A table of the scene, with its place.
@@ -154,7 +154,7 @@ impl<'a> Reader<'a> {
     }
 
     pub(crate) fn opt_color(&self, key: &str) -> Option<[u8; 3]> {
-        super::check::color(self.opt_text(key)?)
+        color(self.opt_text(key)?)
     }
 
     pub(crate) fn opt_table(&self, key: &str) -> Option<Reader<'a>> {

@@ -39,7 +39,7 @@ impl<const D: usize> Plan<D> {
         let mut materials = Vec::new();
         let mut stiffness = Vec::new();
         for (name, table) in scene.tables("materials") {
-            let (material, given) = read_material::<D>(name, &table)?;
+            let (material, given) = read_material(name, &table, D)?;
             materials.push(material);
             stiffness.push((given, table));
         }

@@ -1,8 +1,9 @@
 //! The table of keys made into what others read: a JSON schema for editors, and the tables of
 //! docs/scene-format.md.
 
-use super::keys::{Bound, Key, Kind, MODELS, SECTIONS, Section, WhenAbsent, model_section};
-use super::preset::PRESETS;
+use super::key::{Bound, Key, Kind, Section, WhenAbsent};
+use super::keys::sections;
+use super::material::{ELASTIC, MATERIAL, MODELS, Preset, SceneModel};
 use serde_json::{Map, Value, json};
 
 /// The scene format as a JSON schema (draft 2020-12).
@@ -127,18 +128,14 @@ fn value_of(kind: Kind) -> Value {
 
 /// A material by its model, or by its preset.
 fn material() -> Value {
-    let variants = MODELS.iter().filter_map(|model| {
-        let mut variant = object(model_section(model)?);
-        let presets: Vec<&str> = PRESETS
-            .iter()
-            .filter(|preset| preset.keys.starts_with(&format!("model = \"{model}\"")))
-            .map(|preset| preset.name)
-            .collect();
-        variant["properties"]["model"]["const"] = json!(model);
+    let variants = MODELS.iter().map(|model| {
+        let mut variant = object(model.section);
+        let presets: Vec<&str> = model.presets.iter().map(|preset| preset.name).collect();
+        variant["properties"]["model"]["const"] = json!(model.name);
         variant["properties"]["preset"]["enum"] = json!(presets);
         variant["anyOf"] =
             json!([{ "required": ["model", "density"] }, { "required": ["preset"] }]);
-        Some(variant)
+        variant
     });
     json!({ "anyOf": variants.collect::<Vec<_>>() })
 }
@@ -146,26 +143,31 @@ fn material() -> Value {
 /// A table of the documentation.
 struct DocTable {
     name: &'static str,
-    header: &'static str,
+    header: String,
     keys: &'static [Key],
 }
 
 /// The tables; keys that several models share are listed once.
 fn tables() -> Vec<DocTable> {
     let mut tables: Vec<DocTable> = Vec::new();
-    for section in SECTIONS {
-        for (index, keys) in section.keys.iter().enumerate() {
+    for section in sections() {
+        for keys in section.keys {
             if tables.iter().any(|table| core::ptr::eq(table.keys, *keys)) {
                 continue;
             }
-            let (name, header) = match (section.keys.len(), index, keys.first().map(|key| key.name))
-            {
-                (_, 0, Some("model")) => ("material", "[materials.NAME], every model"),
-                (_, 1, Some("youngs_modulus")) => (
-                    "elastic",
-                    "[materials.NAME], models `corotated`, `neo_hookean`, `snow`",
-                ),
-                _ => (section.name, section.header),
+            let (name, header) = if core::ptr::eq(*keys, MATERIAL) {
+                ("material", "[materials.NAME], every model".to_owned())
+            } else if core::ptr::eq(*keys, ELASTIC) {
+                let elastic = |model: &&SceneModel| {
+                    (model.section.keys.iter()).any(|keys| core::ptr::eq(*keys, ELASTIC))
+                };
+                let names: Vec<String> = (MODELS.iter().filter(elastic))
+                    .map(|model| format!("`{}`", model.name))
+                    .collect();
+                let header = format!("[materials.NAME], models {}", names.join(", "));
+                ("elastic", header)
+            } else {
+                (section.name, section.header.to_owned())
             };
             tables.push(DocTable { name, header, keys });
         }
@@ -223,7 +225,7 @@ pub fn docs_of(name: &str) -> Option<String> {
 
 fn presets() -> String {
     let mut out = "| preset | keys | | source |\n|---|---|---|---|\n".to_owned();
-    for preset in PRESETS {
+    for preset in Preset::all() {
         let keys: Vec<String> = preset
             .keys
             .lines()

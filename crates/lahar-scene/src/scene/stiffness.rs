@@ -1,20 +1,13 @@
 //! How stiff fluids are: by the fastest flow that is expected, where the scene leaves it open.
 
 use super::forces::expect;
+use super::material::Stiffness;
 use super::plan::{Body, Plan};
 use super::read::Reader;
 use super::three;
 use crate::error::SceneError;
 use lahar::geometry::Bounds;
 use lahar::{Command, Model, TimeStep};
-
-/// How a fluid's stiffness is given.
-#[derive(Clone, Copy)]
-pub(super) enum Stiffness {
-    Auto,
-    SoundSpeed(f64),
-    Bulk(f64),
-}
 
 /// Sound travels so many times faster than the fastest water that is expected: density then varies
 /// by about 1 % (Monaghan 1994).
@@ -98,13 +91,13 @@ impl<const D: usize> Plan<D> {
     /// Gives every fluid its bulk modulus.
     pub(super) fn settle_stiffness(
         &mut self,
-        given: &[(Stiffness, Reader<'_>)],
+        given: &[(Option<Stiffness>, Reader<'_>)],
     ) -> Result<(), SceneError> {
         let speed = Falls::of(self).speed(self.gravity);
         for (index, (material, (stiffness, table))) in
             self.materials.iter_mut().zip(given).enumerate()
         {
-            let Model::Fluid(fluid) = &mut material.model else {
+            let (Model::Fluid(fluid), Some(stiffness)) = (&mut material.model, stiffness) else {
                 continue;
             };
             fluid.bulk_modulus = match stiffness {

@@ -2,7 +2,8 @@
 
 use super::check::{accepts, model_of};
 use super::document::{Document, Node, Table, Value};
-use super::keys::{Kind, SCENE, SECTIONS, Section, model_section};
+use super::key::{Kind, Section};
+use super::keys::{SCENE, sections};
 use super::*;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/scene-format.md");
@@ -79,7 +80,7 @@ fn used_keys(root: &Table) -> Vec<(&'static str, String)> {
                     let Value::Table(material) = &entry.node.value else {
                         continue;
                     };
-                    if let Some(section) = model_of(material).and_then(model_section) {
+                    if let Some(section) = model_of(material).map(|model| model.section) {
                         visit(material, section, used);
                     }
                 }
@@ -119,7 +120,7 @@ fn every_key_has_an_example_on_the_page() {
         .flat_map(|block| used_keys(&Document::parse(block, "", &[]).unwrap().root))
         .collect();
     let mut without = Vec::new();
-    for section in SECTIONS {
+    for section in sections() {
         for key in section
             .keys()
             .filter(|key| !matches!(key.kind, Kind::Later))
@@ -196,7 +197,7 @@ fn defaults_of_the_table_are_valid() {
 #[test]
 fn the_schema_names_every_key() {
     let schema = schema().to_string();
-    for section in SECTIONS {
+    for section in sections() {
         for key in section.keys() {
             let there = schema.contains(&format!("\"{}\":", key.name));
             assert!(there || matches!(key.kind, Kind::Later), "{}", key.name);

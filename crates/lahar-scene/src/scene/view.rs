@@ -11,7 +11,8 @@
 use super::colliders::{ColliderInfo, colliders_of};
 use super::controls::{Controls, read_controls};
 use super::document::{Sources, Span, Value, from_json};
-use super::keys::{self, Kind};
+use super::key::Kind;
+use super::keys;
 use super::read::Reader;
 use super::three;
 

@@ -8,10 +8,10 @@
 //! The first term needs H alone. The second is of second order in the strain, so that the rounding
 //! of R does no harm.
 
-use super::{
-    ConstitutiveModel, DisplacementGradient, Model, Preset, lame, largest_squared_stretch,
-    left_strain,
-};
+use super::constitutive::ConstitutiveModel;
+use super::moduli::lame;
+use super::presets::Preset;
+use super::strain::{DisplacementGradient, largest_squared_stretch, left_strain};
 use crate::math::{Matrix, Real, polar};
 
 /// τ = 2μ(F−R)Fᵀ + λ(J−1)J I; Φ = μ|F−R|² + ½λ(J−1)².
@@ -28,12 +28,12 @@ pub struct Corotated {
 }
 
 /// The preset of a soft solid.
-pub(super) const PRESETS: &[Preset] = &[Preset {
+pub(super) const PRESETS: &[Preset<Corotated>] = &[Preset {
     name: "jelly",
     about: "Gelatin, one part to twenty of water: E = 4.3 kPa (J. E. Bonavia et al., arXiv:2512.20502); \
             ν = 0.45 rather than nearly ½, and 1010 kg/m³, are choices.",
     density: 1010.0,
-    model: |_, _| Model::Corotated(Corotated::new(4.3e3, 0.45)),
+    model: |_, _| Corotated::new(4.3e3, 0.45),
 }];
 
 impl Corotated {

@@ -5,7 +5,10 @@
 //! frame indifferent only to first order in the rotation. Bodies that turn need
 //! [`Corotated`](super::Corotated), which has the same limit for small strains.
 
-use super::{ConstitutiveModel, DisplacementGradient, Preset, lame};
+use super::constitutive::ConstitutiveModel;
+use super::moduli::lame;
+use super::presets::Preset;
+use super::strain::{DisplacementGradient, largest_squared_stretch};
 use crate::math::{Matrix, Real};
 
 /// σ = λ tr(e) I + 2μ e with e = ½(H + Hᵀ), H = F − I; Φ = μ|e|² + ½λ tr²(e).
@@ -32,7 +35,7 @@ pub struct LinearElastic {
 }
 
 /// There are none: substances are described by laws that may turn.
-pub(super) const PRESETS: &[Preset] = &[];
+pub(super) const PRESETS: &[Preset<LinearElastic>] = &[];
 
 impl LinearElastic {
     /// Creates the law of Young's modulus \[Pa\] and Poisson's ratio, −1 < ν < ½.
@@ -86,6 +89,6 @@ impl<const D: usize> ConstitutiveModel<D> for LinearElastic {
     #[inline(always)]
     fn wave_modulus<R: Real>(&self, strain: DisplacementGradient<R, D>) -> R {
         let modulus = (self.lambda + 2.0 * self.mu).max(self.mu);
-        super::largest_squared_stretch(strain.h) * strain.h[(0, 0)].lit(modulus)
+        largest_squared_stretch(strain.h) * strain.h[(0, 0)].lit(modulus)
     }
 }

@@ -8,13 +8,16 @@
 //! |---|---|
 //! | `none.rs`, `corotated.rs`, ... | one model each: law, parameters, presets |
 //! | `fluid/` | the fluid, and all that concerns fluids only |
+//! | `constitutive.rs` | the trait of all models |
 //! | `variables.rs`, `strain.rs` | declared tables of internal variables |
 //! | `law.rs` | a model on columns of storage, as the engine calls it |
 
+mod constitutive;
 mod corotated;
 pub mod fluid;
 mod law;
 mod linear_elastic;
+mod moduli;
 mod neo_hookean;
 mod none;
 mod presets;
@@ -49,6 +52,7 @@ macro_rules! models {
     };
 }
 
+pub use constitutive::ConstitutiveModel;
 pub use fluid::{
     Eos, FluidModel, JacobianUpdate, SMALLEST_JACOBIAN, TORN, ViscousStress, VolumeCorrection,
     VolumeRule,
@@ -56,61 +60,15 @@ pub use fluid::{
 };
 pub use law::{IsaToken, Law, ParticleEnergy, ParticleState, law};
 pub(crate) use law::{built_in, load_matrix, load_vector, start};
+pub use moduli::{lame, lame_from_bulk_and_shear};
 pub use neo_hookean::LOGARITHM_ENDS;
-pub use presets::{Preset, preset};
+pub use presets::Preset;
 pub use snow::HardeningFrom;
 pub use strain::{Dilatation, DisplacementGradient, PLASTIC_JACOBIAN, PlasticGradient, Strain};
 #[doc(hidden)]
 pub use variables::Entries;
 pub use variables::{DEFORMATION_GRADIENT, JACOBIAN, Rest, Variable, Variables};
 pub(crate) use variables::{find, values};
-
-use crate::math::{Matrix, Real};
-use strain::{largest_squared_stretch, left_strain};
-
-/// A law: stress and energy from strain, and how strain follows the motion.
-///
-/// Formulas are generic over [`Real`]: they run on one scalar or on a register of particles. They
-/// branch by [`Real::select`], not by `if`.
-pub trait ConstitutiveModel<const D: usize>: Copy + Send + Sync {
-    /// The internal variables, what the model remembers of a particle.
-    type Strain<R: Real>: Strain<R, D>;
-
-    /// Returns the Kirchhoff stress τ = (∂Φ/∂F) Fᵀ = J σ \[Pa\], plus the viscous stress of the
-    /// velocity gradient (`velocity_gradient[(i, j)]` = ∂v_i/∂x_j \[1/s\]).
-    fn kirchhoff_stress<R: Real>(
-        &self,
-        strain: Self::Strain<R>,
-        velocity_gradient: Matrix<R, D>,
-    ) -> Matrix<R, D>;
-
-    /// Returns the strain after a substep: (7), then the return mapping. `increment` is Δt ∂v/∂x.
-    fn advance<R: Real>(&self, strain: Self::Strain<R>, increment: Matrix<R, D>)
-    -> Self::Strain<R>;
-
-    /// Returns the energy Φ per rest volume \[Pa\].
-    fn energy_density<R: Real>(&self, strain: Self::Strain<R>) -> R;
-
-    /// Returns an upper bound on (speed of elastic waves)² × density at rest \[Pa\]: the largest
-    /// stiffness ∂²Φ/∂F² in this state, in the current configuration.
-    fn wave_modulus<R: Real>(&self, strain: Self::Strain<R>) -> R;
-
-    /// Returns the largest dynamic viscosity of the law \[Pa s\], for shear or for longitudinal
-    /// waves. It limits the time step.
-    fn viscosity(&self) -> f64 {
-        0.0
-    }
-
-    /// Returns the model as a fluid, or `None` if it is not one.
-    fn fluid(&self) -> Option<&dyn FluidModel> {
-        None
-    }
-
-    /// Returns the model as a fluid that can be changed, or `None` if it is not one.
-    fn fluid_mut(&mut self) -> Option<&mut dyn FluidModel> {
-        None
-    }
-}
 
 /// A scene's named choice of a model.
 #[derive(Clone, Debug, PartialEq)]
@@ -152,8 +110,20 @@ macro_rules! declare_models {
             }
         }
 
-        /// The presets of each model.
-        pub(super) const PRESETS: &[&[Preset]] = &[$($module::PRESETS),*];
+        /// Returns the names of all presets, grouped by model, each with a sentence on the substance
+        /// and the source of its numbers.
+        pub fn presets() -> impl Iterator<Item = (&'static str, &'static str)> {
+            core::iter::empty()
+                $(.chain($module::PRESETS.iter().map(|preset| (preset.name, preset.about))))*
+        }
+
+        /// Returns the model and the density \[kg/m³\] of the preset called `name`.
+        fn find_preset(name: &str, sound_speed: f64) -> Option<(f64, Model)> {
+            None$(.or_else(|| {
+                let (density, law) = presets::find($module::PRESETS, name, sound_speed)?;
+                Some((density, Model::$law(law)))
+            }))*
+        }
 
         /// The internal variables of each model.
         const TABLES: &[&[Variable]] =
@@ -188,6 +158,26 @@ macro_rules! match_model {
 }
 pub(crate) use match_model;
 
+/// Returns the material of the preset called `name`, or `None` if there is no such preset; see
+/// [`presets`].
+///
+/// Fluids get the bulk modulus ρ₀c² of the `sound_speed` c to simulate with \[m/s\], for which ten
+/// times the largest speed of the flow is usual. Solids have their own stiffness.
+///
+/// ```
+/// let water = lahar::material::preset("water", 20.0).unwrap();
+/// assert_eq!(water.density, 998.2);
+/// assert!((water.sound_speed() - 20.0).abs() < 1e-12);
+/// ```
+pub fn preset(name: &str, sound_speed: f64) -> Option<Material> {
+    let (density, model) = find_preset(name, sound_speed)?;
+    Some(Material {
+        name: name.to_owned(),
+        density,
+        model,
+    })
+}
+
 /// The most variables that all models together have.
 const MOST_VARIABLES: usize = 64;
 
@@ -212,19 +202,4 @@ impl Model {
         }
         for_model!(self, law => at_rest(law))
     }
-}
-
-/// Returns Lamé's parameters (λ, μ) \[Pa\] of Young's modulus \[Pa\] and Poisson's ratio. In 2D they
-/// are those of plane strain.
-pub fn lame(youngs_modulus: f64, poisson_ratio: f64) -> (f64, f64) {
-    let (e, nu) = (youngs_modulus, poisson_ratio);
-    (
-        e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)),
-        e / (2.0 * (1.0 + nu)),
-    )
-}
-
-/// Returns Lamé's parameters (K − ⅔G, G) \[Pa\] of the bulk modulus K and the shear modulus G.
-pub fn lame_from_bulk_and_shear(bulk_modulus: f64, shear_modulus: f64) -> (f64, f64) {
-    (bulk_modulus - shear_modulus * 2.0 / 3.0, shear_modulus)
 }

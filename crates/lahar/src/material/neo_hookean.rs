@@ -5,10 +5,10 @@
 //! the energy. The law is thus defined for every F, and pushes back a particle that is turned inside
 //! out.
 
-use super::{
-    ConstitutiveModel, DisplacementGradient, Model, Preset, Strain, lame, largest_squared_stretch,
-    left_strain,
-};
+use super::constitutive::ConstitutiveModel;
+use super::moduli::lame;
+use super::presets::Preset;
+use super::strain::{DisplacementGradient, Strain, largest_squared_stretch, left_strain};
 use crate::math::near_one::{ln_1p, minus_ln_1p};
 use crate::math::{Matrix, Real};
 
@@ -30,12 +30,12 @@ pub struct NeoHookean {
 }
 
 /// The preset of a tough solid.
-pub(super) const PRESETS: &[Preset] = &[Preset {
+pub(super) const PRESETS: &[Preset<NeoHookean>] = &[Preset {
     name: "rubber",
     about: "Vulcanized natural rubber: 930 kg/m³, E = 2 MPa (M. F. Ashby, Materials Selection in \
             Mechanical Design, 1.5 to 2.5 MPa); ν = 0.49 rather than 0.4999 keeps the time step bearable.",
     density: 930.0,
-    model: |_, _| Model::NeoHookean(NeoHookean::new(2e6, 0.49)),
+    model: |_, _| NeoHookean::new(2e6, 0.49),
 }];
 
 impl NeoHookean {

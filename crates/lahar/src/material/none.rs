@@ -1,6 +1,8 @@
 //! No law: particles that carry mass and momentum and exert no stress ("dust").
 
-use super::{ConstitutiveModel, Dilatation, Preset};
+use super::constitutive::ConstitutiveModel;
+use super::presets::Preset;
+use super::strain::Dilatation;
 use crate::math::{Matrix, Real};
 
 /// The largest |J − 1| of dust. It does not resist, so that the J of a lone particle would grow until
@@ -12,7 +14,7 @@ const LARGEST_DILATATION: f64 = 1e6;
 pub struct Dust;
 
 /// There are none: dust has no numbers to look up but its density.
-pub(super) const PRESETS: &[Preset] = &[];
+pub(super) const PRESETS: &[Preset<Dust>] = &[];
 
 impl<const D: usize> ConstitutiveModel<D> for Dust {
     type Strain<R: Real> = Dilatation<R>;

@@ -1,10 +1,8 @@
-//! Materials by name, with the sources of their numbers. Each model's file has its own presets.
+//! Named materials, with the sources of their numbers. Each model's file has its own presets.
 
-use super::{Material, Model, PRESETS};
-
-/// A named material. Scene files offer the same ones: `preset = "water"`.
+/// A named material of the model `M`. Scene files offer the same ones: `preset = "water"`.
 #[derive(Clone, Copy, Debug)]
-pub struct Preset {
+pub struct Preset<M> {
     /// Its name.
     pub name: &'static str,
     /// One sentence on the substance, with the source of the numbers.
@@ -13,26 +11,12 @@ pub struct Preset {
     pub density: f64,
     /// Makes the model. Fluids take the bulk modulus ρ₀c² of the sound speed c to simulate with
     /// \[m/s\]; solids do not read it.
-    pub(super) model: fn(density: f64, sound_speed: f64) -> Model,
+    pub(super) model: fn(density: f64, sound_speed: f64) -> M,
 }
 
-impl Preset {
-    /// All presets, grouped by model.
-    pub fn all() -> impl Iterator<Item = &'static Self> {
-        PRESETS.iter().copied().flatten()
-    }
-}
-
-/// Returns the material of the preset called `name`, or `None` if there is no such preset; see
-/// [`Preset::all`].
-///
-/// Fluids get the bulk modulus ρ₀c² of the `sound_speed` c to simulate with \[m/s\], for which ten
-/// times the largest speed of the flow is usual. Solids have their own stiffness.
-pub fn preset(name: &str, sound_speed: f64) -> Option<Material> {
-    let preset = Preset::all().find(|preset| preset.name == name)?;
-    Some(Material {
-        name: name.to_owned(),
-        density: preset.density,
-        model: (preset.model)(preset.density, sound_speed),
-    })
+/// Returns the preset called `name` as a density \[kg/m³\] and a model.
+pub(super) fn find<M>(presets: &[Preset<M>], name: &str, sound_speed: f64) -> Option<(f64, M)> {
+    let preset = presets.iter().find(|preset| preset.name == name)?;
+    let model = (preset.model)(preset.density, sound_speed);
+    Some((preset.density, model))
 }

@@ -10,9 +10,11 @@
 //!    and h grows           and h falls
 //! ```
 
-use super::{
-    ConstitutiveModel, Corotated, DisplacementGradient, Model, PlasticGradient, Preset, lame,
-};
+use super::constitutive::ConstitutiveModel;
+use super::corotated::Corotated;
+use super::moduli::lame;
+use super::presets::Preset;
+use super::strain::{DisplacementGradient, PlasticGradient};
 use crate::math::{Matrix, Real, svd};
 
 /// Corotated with moduli h λ, h μ; singular values of F_E clamped to [1−θc, 1+θs];
@@ -45,11 +47,11 @@ pub struct Snow {
 const ROUNDING: f64 = 16.0;
 
 /// The preset of the paper.
-pub(super) const PRESETS: &[Preset] = &[Preset {
+pub(super) const PRESETS: &[Preset<Snow>] = &[Preset {
     name: "snow",
     about: "The snow of Stomakhin et al. 2013: 400 kg/m³, E = 140 kPa, ν = 0.2, θc = 2.5 %, θs = 0.75 %, ξ = 10.",
     density: 400.0,
-    model: |_, _| Model::Snow(Snow::default()),
+    model: |_, _| Snow::default(),
 }];
 
 impl Snow {

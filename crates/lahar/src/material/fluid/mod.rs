@@ -7,16 +7,21 @@
 //! |---|---|
 //! | `mod.rs` | equation of state, stress, presets |
 //! | `rheology.rs` | viscosity that depends on the rate of shear |
+//! | `model.rs` | what the engine asks of fluids only |
 //! | `volume_rule.rs` | where J comes from |
 //! | `storage.rs` | what the engine does with fluids only |
 
+mod model;
 pub mod rheology;
 mod storage;
 mod volume_rule;
 
+pub use model::FluidModel;
 pub use volume_rule::{VolumeCorrection, VolumeRule};
 
-use super::{ConstitutiveModel, Dilatation, Model, Preset};
+use super::constitutive::ConstitutiveModel;
+use super::presets::Preset;
+use super::strain::Dilatation;
 use crate::math::near_one::{minus_ln_1p, power_minus_one};
 use crate::math::{Matrix, Real};
 use rheology::{CREEP_RATE, HerschelBulkley, Rheology, shear_rate};
@@ -102,25 +107,8 @@ pub enum ViscousStress {
     Engineering,
 }
 
-/// What the engine asks of fluids only. Their strain has the variable J
-/// ([`JACOBIAN`](super::JACOBIAN)).
-pub trait FluidModel {
-    /// Returns the source of J.
-    fn volume_rule(&self) -> VolumeRule;
-
-    /// Returns the bulk modulus at rest \[Pa\].
-    fn bulk_modulus(&self) -> f64;
-
-    /// Sets the bulk modulus at rest \[Pa\].
-    fn set_bulk_modulus(&mut self, bulk_modulus: f64);
-
-    /// Returns the J − 1 at which this fluid has the pressure that it had at `jacobian_minus_one` when
-    /// its bulk modulus was `before` \[Pa\].
-    fn at_same_pressure(&self, jacobian_minus_one: f64, before: f64) -> f64;
-}
-
 /// The presets of liquids.
-pub(super) const PRESETS: &[Preset] = &[
+pub(super) const PRESETS: &[Preset<Fluid>] = &[
     Preset {
         name: "water",
         about: "Fresh water at 20 °C: 998.2 kg/m³, 1.002 mPa s (IAPWS; CRC Handbook of Chemistry and Physics).",
@@ -164,11 +152,11 @@ pub(super) const PRESETS: &[Preset] = &[
 ];
 
 /// A liquid of constant viscosity \[Pa s\].
-fn newtonian(density: f64, sound_speed: f64, viscosity: f64) -> Model {
-    Model::Fluid(Fluid {
+fn newtonian(density: f64, sound_speed: f64, viscosity: f64) -> Fluid {
+    Fluid {
         viscosity,
         ..Fluid::water_like(density, sound_speed)
-    })
+    }
 }
 
 /// A liquid with a yield stress \[Pa\], a consistency \[Pa sⁿ\] and a flow index.
@@ -176,8 +164,8 @@ fn yielding(
     density: f64,
     sound_speed: f64,
     (yield_stress, consistency, flow_index): (f64, f64, f64),
-) -> Model {
-    Model::Fluid(Fluid {
+) -> Fluid {
+    Fluid {
         viscosity: 0.0,
         rheology: Rheology::HerschelBulkley(HerschelBulkley {
             yield_stress,
@@ -186,7 +174,7 @@ fn yielding(
             creep_rate: CREEP_RATE,
         }),
         ..Fluid::water_like(density, sound_speed)
-    })
+    }
 }
 
 impl Fluid {
