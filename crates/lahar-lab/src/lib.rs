@@ -1,9 +1,31 @@
-//! Measurements of the lahar simulator: physics cases against references, the speed of a machine, and plots of both.
+//! Measurements of the [lahar](https://docs.rs/lahar) simulator: physics cases against references, the speed of a machine,
+//! and plots and reports of runs.
 //!
 //! - [`method`] checks the method itself on any engine.
 //! - [`validate`] runs scenes and compares numbers with exact solutions, experiments and other programs.
 //! - [`bench`] measures particle-steps per second.
-//! - [`plot`] draws curves as SVG.
+//! - [`run_plots`] and [`run_page`] draw the measurements of runs, and join them to a page of HTML.
+//! - [`plot`] draws curves as SVG; [`numbers`] writes numbers for people.
+//!
+//! # Tour
+//!
+//! A physics case is run and its findings are printed as a table:
+//!
+//! ```
+//! use lahar::Isa;
+//! use lahar_lab::validate::{self, Options};
+//!
+//! let options = Options {
+//!     quick: true,
+//!     isa: Isa::Portable,
+//!     set: Vec::new(),
+//!     scene_file: None,
+//! };
+//! let outcome = validate::run(validate::find("K1")[0], &options, &|_| {})?;
+//! assert!(outcome.pass());
+//! println!("{}", validate::text(&outcome.findings));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod bench;
 pub mod method;

@@ -91,7 +91,7 @@ pub struct OutputCounts {
     pub film: bool,
 }
 
-/// Seconds by phase.
+/// Seconds by phase of the substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PhaseSeconds {
     /// Sorting particles into blocks.
@@ -105,16 +105,16 @@ pub struct PhaseSeconds {
     pub grid: f64,
     /// Grid to particles (G2P).
     pub gather: f64,
-    /// What else a frame takes: time steps, boundaries' accounts, probes, the copy that a frame that fails
-    /// begins again from.
+    /// All other work of a frame: time steps, sums over boundaries, probes, and the copy from which a failed frame is
+    /// retried.
     #[serde(default)]
     pub other: f64,
-    /// What the solver spent on output: copying, and waiting for the writing thread.
+    /// Output as the simulation sees it: copying, and waiting for the writing thread.
     pub output: f64,
 }
 
 impl PhaseSeconds {
-    /// `seconds` of solving, divided by the solver's phases, and the seconds of output.
+    /// Divides `seconds` of computing among the phases, and adds the seconds of output.
     pub fn new(phases: PhaseTimes, seconds: f64, output: f64) -> Self {
         let PhaseTimes {
             sort,
@@ -135,7 +135,7 @@ impl PhaseSeconds {
         }
     }
 
-    /// Seconds of everything but output.
+    /// Returns the seconds of all phases but output.
     pub fn solving(&self) -> f64 {
         self.sort + self.volume + self.scatter + self.grid + self.gather + self.other
     }

@@ -1,4 +1,4 @@
-//! `.vtp`: VTK's XML PolyData, the numbers appended raw. Vectors and tensors have 3 and 9 components.
+//! `.vtp`: VTK's XML PolyData, with raw numbers appended. Vectors and tensors have 3 and 9 components.
 //!
 //! ```text
 //! <VTKFile ..> ..  <DataArray .. offset="o"/> .. <AppendedData encoding="raw">_ bytes, n bytes | bytes, n bytes | ..
@@ -53,14 +53,14 @@ pub(super) fn write<W: Write>(mut writer: W, snapshot: &Snapshot) -> io::Result<
 "#
     );
     begin(&mut writer, snapshot.time, &piece)?;
-    // In the order in which their places were given.
+    // The blocks follow in the order of their offsets.
     let mut columns = columns.into_iter();
     let block = |writer: &mut W, column: Column<'_>| {
         writer.write_all(&(n as u64 * row_bytes(&column)).to_le_bytes())?;
         write_rows(writer, n, &[column], &LITTLE_ENDIAN)
     };
     block(&mut writer, columns.next().expect("there are positions"))?;
-    // A cell for each point: 0, 1, .. and where it ends: 1, 2, ..
+    // One cell per point: its point 0, 1, .. and its end 1, 2, ..
     for first in [0, 1] {
         writer.write_all(&(n as u64 * WHOLE_NUMBER).to_le_bytes())?;
         for cell in 0..n as u64 {
@@ -75,7 +75,7 @@ pub(super) fn write<W: Write>(mut writer: W, snapshot: &Snapshot) -> io::Result<
     Ok(writer)
 }
 
-/// A mesh, its places in single precision.
+/// Writes a mesh with positions in single precision.
 pub(super) fn write_triangles(
     writer: &mut impl Write,
     mesh: Triangles<'_>,
@@ -114,7 +114,7 @@ pub(super) fn write_triangles(
     writer.write_all(END)
 }
 
-/// What comes before the numbers; `piece` names the arrays.
+/// Writes the text before the numbers; `piece` declares the arrays.
 fn begin(writer: &mut impl Write, time: f64, piece: &str) -> io::Result<()> {
     write!(
         writer,
@@ -151,14 +151,14 @@ fn row_bytes(column: &Column<'_>) -> u64 {
     column.components.len() as u64 * number(column.data).1
 }
 
-/// Gives arrays their places, one behind the other.
+/// Declares arrays and assigns their offsets, one after the other.
 struct Arrays {
     offset: u64,
     count: u64,
 }
 
 impl Arrays {
-    /// The tag of an array with so many bytes a particle.
+    /// Returns the tag of an array with `row_bytes` bytes per particle.
     fn tag(&mut self, kind: &str, name: &str, components: usize, row_bytes: u64) -> String {
         let offset = self.offset;
         self.offset += size_of::<u64>() as u64 + self.count * row_bytes;
@@ -181,7 +181,7 @@ impl Arrays {
 mod tests {
     use super::*;
 
-    /// The numbers of an array as the tag with that name says, byte by byte.
+    /// Returns the bytes of an array by the offset in its tag.
     fn array<'a>(file: &'a [u8], name: &str) -> &'a [u8] {
         let marker = b"<AppendedData encoding=\"raw\">\n_";
         let start = file

@@ -101,7 +101,7 @@ impl GrowingFile {
         })
     }
 
-    /// Appends `bytes`.
+    /// Appends `bytes` to the file.
     pub(crate) fn add(&mut self, bytes: &[u8]) -> Result<(), OutputError> {
         self.file
             .write_all(bytes)

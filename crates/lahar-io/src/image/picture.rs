@@ -19,9 +19,9 @@ use crate::files::{Durability, write_whole_io};
 /// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Width \[pixels\].
+    /// Width of the picture \[pixels\].
     pub width: u32,
-    /// Height \[pixels\].
+    /// Height of the picture \[pixels\].
     pub height: u32,
     /// Red, green and blue of each pixel, row after row.
     pub rgb: Vec<u8>,

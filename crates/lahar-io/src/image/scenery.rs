@@ -105,7 +105,7 @@ impl Scenery {
 
 /// The box that pictures show.
 enum Bounds<'a> {
-    /// The domain.
+    /// The domain of the scene.
     Domain(([f64; 3], [f64; 3])),
     /// The particles of a snapshot and a margin around them.
     Around(&'a Snapshot),

@@ -94,7 +94,7 @@ enum Contents {
     Run,
     /// A `run.json` that lahar did not write.
     ForeignRecord,
-    /// Anything else.
+    /// Files of any other kind.
     Other,
 }
 

@@ -151,7 +151,7 @@ pub struct Measurement {
     /// Number of particles.
     pub particles: u64,
     /// Number of cells along 1 m.
-    #[serde(alias = "cells_per_metre")]
+    #[serde(default)]
     pub cells_per_meter: f64,
     /// Seconds in which the scene was built.
     pub build_seconds: f64,

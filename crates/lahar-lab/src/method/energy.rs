@@ -145,7 +145,7 @@ impl Disc {
 pub struct Dissipation {
     /// Staggered energy before each substep, plus the energy dissipated so far.
     pub staggered: Vec<f64>,
-    /// Dissipated energy.
+    /// Energy that was dissipated.
     pub dissipated: f64,
     /// The largest amount of dissipated energy that a substep has given back.
     pub given_back: f64,

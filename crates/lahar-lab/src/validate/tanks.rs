@@ -18,7 +18,7 @@ pub(super) const CASES: &[Case] = &[Case {
 /// Depth of the water \[m\].
 const DEPTH: f64 = 1.0;
 
-/// Gravity \[m/s²\].
+/// Acceleration of gravity \[m/s²\].
 const GRAVITY: f64 = 9.81;
 
 /// Substeps of the full case.
