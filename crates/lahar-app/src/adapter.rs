@@ -19,7 +19,7 @@ pub(crate) fn instance(
 /// Looks for an adapter, software included.
 ///
 /// # Errors
-/// There is none, and which backends were looked for.
+/// There is none. The message names the backends that were looked for.
 pub(crate) fn check(wanted: &wgpu::InstanceDescriptor) -> Result<(), String> {
     let backends = wanted.backends;
     let found = pollster::block_on(instance(wanted, backends).enumerate_adapters(backends));

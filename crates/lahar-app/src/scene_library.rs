@@ -108,7 +108,7 @@ impl SceneSource for SceneLibrary {
 /// Opens a finished run at its first frame.
 fn replay(folder: &Path) -> Result<OpenedScene, String> {
     let recording = Recording::open(folder).map_err(|error| error.to_string())?;
-    let view = SceneView::recorded(&recording.record().scene);
+    let view = recording.record().view();
     Ok(OpenedScene {
         info: recorded_info(&recording, view),
         content: SceneContent::Recording(Box::new(recording)),

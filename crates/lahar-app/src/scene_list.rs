@@ -5,7 +5,7 @@ use eframe::egui::{self, Align2, Key, RichText, Ui, Vec2, vec2};
 use crate::app_state::AppState;
 use crate::scenes::SceneCard;
 
-/// Size of a scene's small picture [points].
+/// Size of a scene's small picture \[points\].
 const THUMBNAIL: Vec2 = vec2(112.0, 64.0);
 
 /// Shows the list of scenes. Typing leaves the scenes that contain all the words, the arrows choose one of them, and

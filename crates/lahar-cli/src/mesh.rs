@@ -52,10 +52,9 @@ pub(crate) fn mesh(args: &args::Mesh) -> Result<ExitCode, CliError> {
 
 /// Returns the chosen materials, or all without a choice, with their numbers in the scene.
 fn materials(recording: &Recording, chosen: &[String]) -> Result<Vec<(u32, String)>, CliError> {
-    let scene = &recording.record().scene;
-    let table = scene["materials"].as_object();
+    let materials = recording.record().view().materials;
     let all: Vec<(u32, String)> = (0..)
-        .zip(table.into_iter().flat_map(|table| table.keys().cloned()))
+        .zip(materials.into_iter().map(|material| material.name))
         .collect();
     if let Some(unknown) = (chosen.iter()).find(|name| !all.iter().any(|(_, own)| own == *name)) {
         let names: Vec<&str> = all.iter().map(|(_, name)| name.as_str()).collect();

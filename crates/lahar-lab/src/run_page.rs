@@ -26,9 +26,10 @@ pub fn html(
     record: &Record,
     pictures: &[(String, Picture)],
 ) -> Result<String, OutputError> {
-    let title = match record.scene["title"].as_str() {
-        Some(title) if !title.is_empty() => title,
-        _ => &record.scene_name,
+    let view = record.view();
+    let title = match view.title.as_str() {
+        "" => &record.scene_name,
+        title => title,
     };
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width\">\n<title>{0}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{0}</h1>\n<p>{1}</p>\n",

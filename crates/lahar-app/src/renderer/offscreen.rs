@@ -44,7 +44,7 @@ impl Fault {
 /// Finds an adapter that can draw without a display, software included, and its name.
 ///
 /// # Errors
-/// There is none, and which were looked for.
+/// There is none. The message names the backends that were looked for.
 fn find_adapter() -> Result<(wgpu::Adapter, String), String> {
     let setup = WgpuSetupCreateNew::without_display_handle();
     let wanted = setup.instance_descriptor;

@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
+use lahar_scene::scene::SceneView;
 use serde::{Deserialize, Serialize};
 
 use crate::checkpoint::PhaseSeconds;
@@ -73,6 +74,11 @@ pub struct Record {
 }
 
 impl Record {
+    /// Returns the view of the scene that was run.
+    pub fn view(&self) -> SceneView {
+        SceneView::recorded(&self.scene)
+    }
+
     /// Writes the file, whole or not at all.
     ///
     /// # Errors
