@@ -66,7 +66,7 @@ impl SceneSource for SceneLibrary {
         let info = SceneInfo {
             domain: simulation.domain(),
             gravity: simulation.gravity(),
-            numbers: format!("{}, {}", simulation.precision(), simulation.isa().name()),
+            numbers: format!("{}, {}", simulation.precision(), simulation.backend().instruction_set),
             warnings: built.warnings,
             ..scene_info(card, view)
         };

@@ -138,14 +138,12 @@ impl<'a> FrameLoop<'a> {
     /// Hands a frame to the writing thread.
     fn write(&mut self, frame: Frame) -> Result<(), OutputError> {
         let simulation = self.driver.simulation_mut();
-        let (before, sorted) = (clock::seconds(), simulation.phase_times().sort);
+        let before = clock::seconds();
         let wanted = frame.output_due && !self.fields.is_empty();
         let snapshot = wanted.then(|| simulation.snapshot(&self.fields));
         let diagnostics = simulation.diagnostics();
         let result = (self.writer).frame(frame.number, snapshot, diagnostics, frame.probes);
-        // Diagnostics sort the particles if the next substep would have; that is no output.
-        let sorting = simulation.phase_times().sort - sorted;
-        self.output_seconds += clock::seconds() - before - sorting;
+        self.output_seconds += clock::seconds() - before;
         result
     }
 
@@ -160,7 +158,7 @@ impl<'a> FrameLoop<'a> {
             lahar: self.start.lahar.clone(),
             dimension: simulation.dimension(),
             precision: simulation.precision().to_owned(),
-            isa: simulation.isa().name().to_owned(),
+            isa: simulation.backend().instruction_set,
             start: self.start.sum(),
             progress: checkpoint::Progress {
                 retries: self.retries(self.driver.settled_retries()),

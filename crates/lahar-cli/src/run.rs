@@ -142,7 +142,7 @@ fn first_record(plan: &RunPlan, simulation: &dyn Simulate, warnings: Vec<String>
         seed: plan.scene.seed,
         dimension: simulation.dimension(),
         precision: simulation.precision().to_owned(),
-        isa: simulation.isa().name().to_owned(),
+        isa: simulation.backend().instruction_set,
         threads: plan.threads,
         frames: 0,
         time: 0.0,

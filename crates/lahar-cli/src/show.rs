@@ -84,7 +84,7 @@ pub(crate) fn describe(scene: &Scene, isa: Isa) -> Result<Value, CliError> {
         "title": scene.title,
         "dimension": scene.dimension,
         "precision": simulation.precision(),
-        "isa": simulation.isa().name(),
+        "isa": simulation.backend().instruction_set,
         "domain": simulation.domain().map(|(min, max)| json!({
             "min": &min[..scene.dimension],
             "max": &max[..scene.dimension],

@@ -35,18 +35,25 @@ element!(f32, F32);
 element!(f64, F64);
 
 /// The numbers of one field, particle after particle.
+///
+/// ```
+/// use lahar::Data;
+///
+/// let data = Data::F32(vec![0.5, 2.0]);
+/// assert_eq!(data.to_f64(), [0.5, 2.0]);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Data {
-    /// Single precision.
+    /// Reals of single precision.
     F32(Vec<f32>),
-    /// Double precision.
+    /// Reals of double precision.
     F64(Vec<f64>),
-    /// Whole numbers.
+    /// Non-negative whole numbers.
     U32(Vec<u32>),
 }
 
 impl Data {
-    /// As `f64`, whatever they are.
+    /// Converts all numbers to `f64`.
     pub fn to_f64(&self) -> Vec<f64> {
         match self {
             Self::F32(v) => v.iter().map(|&x| f64::from(x)).collect(),
@@ -54,7 +61,8 @@ impl Data {
             Self::U32(v) => v.iter().map(|&x| f64::from(x)).collect(),
         }
     }
-    /// As `f32`, whatever they are.
+
+    /// Converts all numbers to `f32`, rounded.
     pub fn to_f32(&self) -> Vec<f32> {
         match self {
             Self::F32(v) => v.clone(),
@@ -64,34 +72,34 @@ impl Data {
     }
 }
 
-/// An array of a checkpoint.
+/// A named array of a [`Checkpoint`](crate::Checkpoint).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Array {
-    /// What it is, like "materials.0.position.1" or "drift".
+    /// The name, like "materials.0.position.1" or "drift".
     pub name: String,
-    /// Its lengths, the slowest axis first; none for a single number.
+    /// The lengths of the axes, the slowest first; empty for a single number.
     pub shape: Vec<usize>,
-    /// Its numbers.
+    /// The numbers, as many as the shape says.
     pub values: Values,
 }
 
-/// Numbers of an array.
+/// The numbers of an [`Array`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Values {
-    /// Single precision.
+    /// Reals of single precision.
     F32(Vec<f32>),
-    /// Double precision.
+    /// Reals of double precision.
     F64(Vec<f64>),
-    /// Whole numbers.
+    /// Non-negative whole numbers.
     U32(Vec<u32>),
     /// Whole numbers of either sign.
     I32(Vec<i32>),
-    /// Large whole numbers.
+    /// Large non-negative whole numbers.
     U64(Vec<u64>),
 }
 
 impl Values {
-    /// How many there are.
+    /// Returns how many numbers there are.
     pub fn len(&self) -> usize {
         match self {
             Self::F32(values) => values.len(),
@@ -102,7 +110,7 @@ impl Values {
         }
     }
 
-    /// Whether there are none.
+    /// Returns true if there are no numbers.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
@@ -110,28 +118,28 @@ impl Values {
     pub(crate) fn f64s(self) -> Option<Vec<f64>> {
         match self {
             Self::F64(values) => Some(values),
-            _ => None,
+            Self::F32(_) | Self::U32(_) | Self::I32(_) | Self::U64(_) => None,
         }
     }
 
     pub(crate) fn u32s(self) -> Option<Vec<u32>> {
         match self {
             Self::U32(values) => Some(values),
-            _ => None,
+            Self::F32(_) | Self::F64(_) | Self::I32(_) | Self::U64(_) => None,
         }
     }
 
     pub(crate) fn i32s(self) -> Option<Vec<i32>> {
         match self {
             Self::I32(values) => Some(values),
-            _ => None,
+            Self::F32(_) | Self::F64(_) | Self::U32(_) | Self::U64(_) => None,
         }
     }
 
     pub(crate) fn u64s(self) -> Option<Vec<u64>> {
         match self {
             Self::U64(values) => Some(values),
-            _ => None,
+            Self::F32(_) | Self::F64(_) | Self::U32(_) | Self::I32(_) => None,
         }
     }
 }

@@ -1,13 +1,22 @@
-//! What can go wrong, said so that the reader knows what and where.
+//! Errors that say what is wrong and where.
 
 use core::fmt;
 
 /// A setup or batch that cannot be simulated.
+///
+/// ```
+/// use lahar::{Setup, Simulation};
+///
+/// let error = Simulation::<f32, 2>::new(Setup::new(-0.1, Vec::new()), &[]).err().ok_or("refused")?;
+/// assert_eq!(error.to_string(), "dx: must be a positive number, not -0.1");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SetupError {
-    /// The part of the setup, by its name in scene files ("dx", "domain.max", "materials.water.density").
+    /// The part of the setup, by its name in scene files ("dx", "domain.max", "materials.water.density"), or the field
+    /// of the batch.
     pub key: String,
-    /// What is wrong with it and what to do.
+    /// The problem, and what to do about it.
     pub message: String,
 }
 
@@ -19,48 +28,60 @@ impl fmt::Display for SetupError {
 
 impl core::error::Error for SetupError {}
 
-/// A run that cannot go on: a particle that is not a number, or has left what positions can say.
-/// The simulation cannot go on from there: [`Simulate::retry_frame`](crate::Simulate::retry_frame) goes
-/// back to the start of the frame.
+/// A substep that failed, since a particle is no longer a finite number or is out of the range of positions. The
+/// simulation cannot go on from there: [`Simulate::retry_frame`](crate::Simulate::retry_frame) goes back to the start
+/// of the frame.
+///
+/// ```
+/// use lahar::{Command, DtLimit, ParticleBatch, Setup, Simulate, Simulation, TimeStep};
+///
+/// let jelly = lahar::material::preset("jelly", 0.0).ok_or("unknown")?;
+/// let mut setup = Setup::<2>::new(0.02, vec![jelly]);
+/// setup.time_step = TimeStep::Fixed(0.01);
+/// let drop = ParticleBatch { position: vec![[0.5, 0.5]], volume: vec![1e-4], ..Default::default() };
+/// let mut simulation = Simulation::<f32, 2>::new(setup, &[drop])?;
+/// simulation.command(Command::Gravity([0.0, -1e9, 0.0]));
+/// let failure = simulation.advance_to(1.0).err().ok_or("the particle stays")?;
+/// assert_eq!((failure.particle, failure.dt_limit), (0, DtLimit::Fixed));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failure {
-    /// What happened.
-    pub what: String,
-    /// The first particle, by id.
+    /// A sentence on the particle's problem.
+    pub problem: String,
+    /// The id of the first particle.
     pub particle: u32,
     /// The name of its material.
     pub material: String,
-    /// Its body.
+    /// The number of its body.
     pub body: u32,
-    /// The last position that was known \[m\].
+    /// Its last known position \[m\].
     pub position: [f64; 3],
-    /// Particles in this state.
+    /// Number of particles that failed.
     pub count: u64,
-    /// The substep in which it happened, from 1.
+    /// Number of the substep that failed, from 1.
     pub substep: u64,
     /// Time at the start of that substep \[s\].
     pub time: f64,
-    /// Its length \[s\].
+    /// Length of that substep \[s\].
     pub dt: f64,
-    /// What limited dt.
+    /// The limit of its length.
     pub dt_limit: DtLimit,
 }
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = self.position;
         write!(
             f,
-            "{} in substep {} at t = {:.6} s: particle {} of material \"{}\" (body {}), last at ({:.4}, {:.4}, {:.4}) m, \
+            "{} in substep {} at t = {:.6} s: particle {} of material \"{}\" (body {}), last at ({x:.4}, {y:.4}, {z:.4}) m, \
              {} particle(s) in all; dt was {:.3e} s, limited by {}",
-            self.what,
+            self.problem,
             self.substep,
             self.time,
             self.particle,
             self.material,
             self.body,
-            self.position[0],
-            self.position[1],
-            self.position[2],
             self.count,
             self.dt,
             self.dt_limit.name()
@@ -70,30 +91,30 @@ impl fmt::Display for Failure {
 
 impl core::error::Error for Failure {}
 
-/// What decided the length of a substep.
+/// The limit that decided the length of a substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DtLimit {
-    /// The scene gives it.
+    /// The setup fixes the length.
     Fixed,
-    /// Sound may cross a part of a cell.
+    /// Sound crosses at most a part of a cell.
     Sound,
-    /// A particle may cross a part of a cell.
+    /// A particle crosses at most a part of a cell.
     Speed,
-    /// A collider may cross a part of a cell.
+    /// A collider crosses at most a part of a cell.
     Collider,
-    /// Viscosity.
+    /// The explicit viscous step must be stable.
     Viscosity,
-    /// The scene's longest substep.
+    /// The setup's longest substep.
     Longest,
-    /// A frame is tried again with less than any of these allow, or one was shortly before.
+    /// The frame is tried again, or a frame was shortly before: the substep is shorter than the other limits allow.
     Retry,
-    /// The frame ends.
+    /// The end of the frame.
     #[default]
     Frame,
 }
 
 impl DtLimit {
-    /// All of them; a checkpoint says which by its place here.
+    /// All limits. A checkpoint refers to a limit by its place in this list.
     pub const ALL: [Self; 8] = [
         Self::Fixed,
         Self::Sound,
@@ -105,7 +126,7 @@ impl DtLimit {
         Self::Frame,
     ];
 
-    /// In a word, for files and screens.
+    /// The limit in one word, for files and screens.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fixed => "fixed",

@@ -33,8 +33,8 @@ use crate::math::{Lanes, Real, Register, Vector};
 use crate::parallel;
 use crate::particles::{Group, block_edge};
 use crate::prefetch::prefetch;
+use crate::setup::Scheme;
 use crate::setup::Transfer;
-use crate::transfer::Scheme;
 use columns::Columns;
 use core::ops::Range;
 use fearless_simd::Simd;
@@ -76,6 +76,7 @@ pub(crate) struct NodePointer<const D: usize> {
 }
 
 /// Blocks, tiles, and how they hang together.
+#[derive(Clone)]
 pub(crate) struct Grid<T, const D: usize> {
     /// Planes of quads: 1, or 2 if the scheme needs velocity before forces.
     planes: usize,

@@ -13,9 +13,10 @@ use crate::grid::{Grid, NodeForces, Tiles};
 use crate::material::{IsaToken, Law, Model, VolumeCorrection};
 use crate::math::Lanes;
 use crate::particles::Group;
+use crate::setup::Scheme;
 use crate::transfer::gather::{Around, Bounds};
 use crate::transfer::scatter::What;
-use crate::transfer::{Scheme, gather, scatter, volume};
+use crate::transfer::{gather, scatter, volume};
 
 /// Numbers that there is an engine for in `D` dimensions: `f32` and `f64` in 2D and 3D.
 pub trait Instance<const D: usize>: Kernels<D> {}

@@ -32,8 +32,10 @@ use crate::material::{
 };
 use crate::math::{Matrix, Vector};
 use crate::setup::Pointer;
-use crate::setup::{Deformation, ForceForm, Kernel, ParticleBatch, Setup, Transfer};
-use crate::simulation::CORRECTION_INTERVAL;
+use crate::setup::check::CheckedSetup;
+use crate::setup::{
+    CORRECTION_INTERVAL, Deformation, ForceForm, Kernel, ParticleBatch, Setup, Transfer,
+};
 use std::collections::BTreeMap;
 
 /// A particle of the oracle.
@@ -112,24 +114,12 @@ impl<const D: usize> Reference<D> {
     /// # Errors
     /// Names the key that cannot be simulated.
     pub fn new(setup: &Setup<D>, batches: &[ParticleBatch<D>]) -> Result<Self, SetupError> {
-        check(setup.dx.is_finite() && setup.dx > 0.0, "dx", || {
-            format!("must be a positive length, not {} m", setup.dx)
-        })?;
-        let singular = setup.kernel == Kernel::Linear && setup.force == ForceForm::Mls;
-        check(!singular, "force", || {
-            "the linear kernel's inertia is singular at nodes: it needs force = \"classic\"".into()
-        })?;
-        let walls = Walls::of(setup)?;
-        let origin = setup.domain.as_ref().map_or([0.0; D], |domain| domain.min);
+        let scene = CheckedSetup::new(setup.clone())?;
         let mut particles = Vec::new();
         let mut measured = Vec::new();
         for batch in batches {
             take_in(setup, batch, &mut particles)?;
             measured.resize(particles.len(), batch.measure_volume);
-        }
-        forces::check(&setup.forces)?;
-        for collider in &setup.colliders {
-            collider.check()?;
         }
         let mut reference = Self {
             starts: particles
@@ -139,14 +129,10 @@ impl<const D: usize> Reference<D> {
             time: 0.0,
             pointer: None,
             uncorrected: 0.0,
-            setup: setup.clone(),
-            origin: Vector(origin),
-            colliders: setup
-                .colliders
-                .iter()
-                .map(|collider| collider.in_units(setup.dx, origin).rooted(&walls))
-                .collect(),
-            walls,
+            origin: Vector(scene.lattice.origin),
+            setup: scene.setup,
+            colliders: scene.colliders,
+            walls: scene.walls,
             particles,
             escaped: Vec::new(),
         };
@@ -942,46 +928,15 @@ fn take_in<const D: usize>(
     batch: &ParticleBatch<D>,
     particles: &mut Vec<Particle<D>>,
 ) -> Result<(), SetupError> {
-    let count = batch.position.len();
-    let material = setup.materials.get(batch.material);
-    let Some(material) = material else {
-        return Err(SetupError {
-            key: "batch.material".into(),
-            message: format!("there is no material {}", batch.material),
-        });
-    };
-    let one_each = |key: &str, len: usize, others: &[usize]| {
-        check(len == count || others.contains(&len), key, || {
-            format!("has {len} entries for {count} particles")
-        })
-    };
-    one_each("batch.velocity", batch.velocity.len(), &[0, 1])?;
-    one_each("batch.volume", batch.volume.len(), &[1])?;
-    one_each("batch.mass", batch.mass.len(), &[0, 1])?;
-    one_each("batch.affine", batch.affine.len(), &[0])?;
-    batch.check_variables(material.model.variables())?;
-    match &batch.deformation {
-        Deformation::Rest => {}
-        Deformation::Jacobian(j) => one_each("batch.deformation", j.len(), &[])?,
-        Deformation::Gradient(f) => one_each("batch.deformation", f.len(), &[])?,
-    }
+    let variables = |material: usize| setup.materials[material].model.variables();
+    batch.check(setup, particles.len() as u32, variables)?;
+    let material = &setup.materials[batch.material];
     let law = law::<D>(&material.model);
     for (i, &position) in batch.position.iter().enumerate() {
         // One for all, or one a particle.
         let pick = |all: &[f64]| all.get(i).or(all.first()).copied();
         let volume0 = pick(&batch.volume).unwrap_or_default();
         let mass = pick(&batch.mass).unwrap_or(material.density * volume0);
-        check(volume0 > 0.0 && volume0.is_finite(), "batch.volume", || {
-            format!("must be positive, not {volume0}")
-        })?;
-        check(mass > 0.0 && mass.is_finite(), "batch.mass", || {
-            format!("must be positive, not {mass} kg")
-        })?;
-        check(
-            position.iter().all(|x| x.is_finite()),
-            "batch.position",
-            || format!("particle {i} is at {position:?}"),
-        )?;
         let velocity = batch.velocity.get(i).or(batch.velocity.first());
         let affine = batch.affine.get(i);
         let h = match &batch.deformation {
@@ -1006,16 +961,6 @@ fn take_in<const D: usize>(
         });
     }
     Ok(())
-}
-
-fn check(holds: bool, key: &str, message: impl FnOnce() -> String) -> Result<(), SetupError> {
-    if holds {
-        return Ok(());
-    }
-    Err(SetupError {
-        key: key.into(),
-        message: message(),
-    })
 }
 
 #[cfg(test)]

@@ -89,7 +89,7 @@ fn the_default_scene_comes_first() {
 fn mass_is_density_times_volume() {
     // Compressed by its own weight, the pool would have a little more mass.
     let at_rest = ("bodies.pool.pressure".into(), "none".into());
-    let mut built = Scene::load("water-jelly-snow", &[at_rest])
+    let built = Scene::load("water-jelly-snow", &[at_rest])
         .unwrap()
         .build(Isa::Portable)
         .unwrap();
@@ -108,7 +108,7 @@ fn mpm88_has_the_numbers_of_mpm88() {
     let scene = Scene::load("mpm88", &[]).unwrap();
     assert_eq!(scene.frame_rate, 100.0);
     assert_eq!(scene.substeps_per_frame, Some(50));
-    let mut built = scene.build(Isa::Portable).unwrap();
+    let built = scene.build(Isa::Portable).unwrap();
     assert_eq!(built.simulation.particle_count(), 8192);
     assert!((built.simulation.diagnostics().mass / (8192.0 / 256.0 / 256.0) - 1.0).abs() < 1e-6);
 }

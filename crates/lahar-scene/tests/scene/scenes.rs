@@ -38,7 +38,7 @@ fn a_start_is_replaced_from_the_command_line() {
     };
     // `particle_volume` does not belong to the shape, so it stays.
     let domain = ("domain.max", "[2.0, 1.0]");
-    let mut replaced = build(&load(&[domain, list]));
+    let replaced = build(&load(&[domain, list]));
     assert_eq!(column(&*replaced, Field::Position), [0.5, 0.25, 1.5, 0.75]);
     let mass = replaced.diagnostics().mass;
     assert!((mass / (2.0 / 256.0 / 256.0) - 1.0).abs() < 1e-6, "{mass}");
@@ -77,8 +77,8 @@ fn a_body_on_the_floor_starts_under_pressure() {
 fn volumes_are_measured() {
     let lattice = ("bodies.column.sampling", "lattice");
     let measured = ("bodies.column.volume", "measured");
-    let mut plain = build(&with(&[lattice, WITHOUT_PRESSURE]));
-    let mut body = build(&with(&[lattice, measured, WITHOUT_PRESSURE]));
+    let plain = build(&with(&[lattice, WITHOUT_PRESSURE]));
+    let body = build(&with(&[lattice, measured, WITHOUT_PRESSURE]));
     let given = column(&*plain, Field::Volume0);
     let found = column(&*body, Field::Volume0);
     let (least, most) = found.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), v| {
@@ -484,7 +484,7 @@ shape = { box = { min = [0.5, 0.0], max = [1.0, 0.25] } }
 #[test]
 fn particles_inside_a_collider_are_left_out() {
     let scene = Scene::parse(IN_THE_WAY, "pool.toml", &[]).unwrap();
-    let mut built = scene.build(Isa::Portable).unwrap();
+    let built = scene.build(Isa::Portable).unwrap();
     assert_eq!(built.left_out, [200]);
     assert_eq!(built.body_particles, [1400]);
     assert_eq!(built.warnings, [] as [&str; 0]);

@@ -21,7 +21,7 @@ fn measure(dimension: usize, shape: &str) -> (f64, Vec<f64>, Vec<[f64; 2]>) {
 
 fn measure_at(dimension: usize, shape: &str, file: &Path) -> (f64, Vec<f64>, Vec<[f64; 2]>) {
     let built = scene(dimension, shape, file).build(Isa::Portable);
-    let mut simulation = built.unwrap_or_else(|error| panic!("{error}")).simulation;
+    let simulation = built.unwrap_or_else(|error| panic!("{error}")).simulation;
     let snapshot = simulation.snapshot(&[Field::Position]);
     let x = snapshot
         .get(Field::Position)
@@ -165,7 +165,7 @@ fn cut_shapes_are_counted() {
         ),
     ] {
         let scene = Scene::parse(&text(shape), "a", &[]).unwrap_or_else(|error| panic!("{error}"));
-        let mut built = scene
+        let built = scene
             .build(Isa::Portable)
             .unwrap_or_else(|error| panic!("{error}"));
         let mass = built.simulation.diagnostics().mass;

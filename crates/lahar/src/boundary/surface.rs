@@ -97,7 +97,7 @@ pub(crate) fn near<const D: usize>(
 }
 
 /// Room for what [`hold`] works out, kept from substep to substep.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Room<const D: usize> {
     /// The nodes as they were.
     free: Vec<NearNode<D>>,
@@ -112,7 +112,7 @@ pub(crate) struct Room<const D: usize> {
 type Brought<const D: usize> = (Matrix<f64, D>, Vector<f64, D>, Vector<f64, D>);
 
 /// A held node and whom it follows.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Held<const D: usize> {
     index: usize,
     /// Which of the list of leaders are its own.

@@ -32,6 +32,7 @@ impl<const D: usize> Link<D> {
 }
 
 /// All links, twice: as the sums over tiles and as the copies of nodes read them.
+#[derive(Clone, Debug)]
 pub(super) struct Links<const D: usize> {
     /// By block, then ascending coordinates of the tile's block.
     by_block: Vec<Link<D>>,
@@ -43,6 +44,7 @@ pub(super) struct Links<const D: usize> {
     room: Room<D>,
 }
 
+#[derive(Clone, Debug)]
 struct Room<const D: usize> {
     pieces: [Vec<Piece>; D],
     grown: Vec<[i32; D]>,

@@ -11,7 +11,7 @@ use crate::particles::block_edge;
 const NONE: u32 = u32::MAX;
 
 /// The nodes with mass around one collider, block after block. Kept from substep to substep for its room.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Near<const D: usize> {
     nodes: Vec<NearNode<D>>,
     /// Where each node's quad is.

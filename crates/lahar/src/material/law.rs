@@ -375,7 +375,7 @@ fn advance_chunk<S: Simd, T: Lanes, const D: usize, M: ConstitutiveModel<D>>(
         }
         let after = model.advance(before, change); // (7)
         after.write(|column, value| T::store::<S>(value, &mut strain[column][start + p..]));
-        wave_modulus.take(simd, model.wave_modulus(after));
+        wave_modulus.include(simd, model.wave_modulus(after));
         p += T::WIDTH;
     }
 }

@@ -1,19 +1,21 @@
-//! A few particles at a time, read and written by whole registers.
+//! Chunks: a few particles at a time, read and written by whole registers.
 
+use super::columns::{ColumnsMut, MOST_COLUMNS};
 use crate::math::{Lanes, Real};
-use crate::particles::{ColumnsMut, MOST_COLUMNS};
 use fearless_simd::Simd;
 
-/// Particles worked on between two looks at the tile.
+/// Number of particles in a chunk: those that laws and transfers work on in turn, while their numbers stay in the
+/// first-level cache.
 pub(crate) const CHUNK: usize = 32;
 
-/// How many rows ahead memory is asked for: two chunks.
+/// How many rows ahead memory is prefetched: two chunks.
 pub(crate) const AHEAD: usize = 2 * CHUNK;
 
-/// A column's numbers of a chunk of particles.
+/// The numbers of one column for a chunk of particles.
 pub(crate) type Rows<T> = [T; CHUNK];
 
-/// Particles `start .. start + count` of `columns`, at most a chunk; from `start` on there is a whole one.
+/// Particles `start .. start + count` of `columns`. There are at most as many as a chunk has, but from `start` on a whole
+/// chunk can be read.
 #[derive(Clone, Copy)]
 pub(crate) struct Chunk<'a, T> {
     pub(crate) columns: &'a [&'a [T]],
@@ -21,7 +23,7 @@ pub(crate) struct Chunk<'a, T> {
     pub(crate) count: usize,
 }
 
-/// Room for the rows of chunks that are not full.
+/// Buffer for the rows of chunks that are not full.
 #[repr(align(64))]
 pub(crate) struct Padded<T>([Rows<T>; MOST_COLUMNS]);
 
@@ -30,8 +32,9 @@ impl<T: Copy + Default> Padded<T> {
         Self([[T::default(); CHUNK]; MOST_COLUMNS])
     }
 
-    /// Rows `start .. start + count` of `columns`, `count` from 1 to [`CHUNK`]: where they lie if a whole chunk
-    /// begins there, else copies, named in `copies`, with the last one again behind them.
+    /// Returns rows `start .. start + count` of `columns`, with `count` from 1 to [`CHUNK`]. They are not copied if a whole
+    /// chunk of rows begins there; else they are copied, with the last row repeated up to a whole chunk, and `copies`
+    /// keeps the slices of the copies.
     #[inline(always)]
     pub(crate) fn chunk<'a>(
         &'a mut self,
@@ -55,7 +58,7 @@ impl<T: Copy + Default> Padded<T> {
         }
     }
 
-    /// The copies of [`Self::chunk`]; empty rows behind the columns.
+    /// Makes the copies of [`Self::chunk`]; the slices behind those of the columns are empty.
     fn copy(&mut self, columns: &[&[T]], start: usize, count: usize) -> [&[T]; MOST_COLUMNS] {
         let mut rows = [&[][..]; MOST_COLUMNS];
         for ((rows, padded), column) in rows.iter_mut().zip(&mut self.0).zip(columns) {
@@ -65,7 +68,7 @@ impl<T: Copy + Default> Padded<T> {
         rows
     }
 
-    /// All of the room, as columns of a chunk each.
+    /// Returns the whole buffer, as columns of one chunk each.
     pub(crate) fn columns(&mut self) -> ColumnsMut<'_, T> {
         let mut rows = self.0.iter_mut();
         ColumnsMut {
@@ -74,8 +77,8 @@ impl<T: Copy + Default> Padded<T> {
     }
 }
 
-/// Where to work on rows `start .. start + count` of the first `used` columns, and the row where they begin
-/// there: in `columns` if the chunk is full, else in `copies`, with the last one again behind them.
+/// Returns the columns to work on for rows `start .. start + count` of the first `used` columns, and the row at which
+/// they begin there. These are `columns` if the chunk is full, else `copies`, with the last row repeated.
 #[inline(always)]
 pub(crate) fn open_chunk<'a, 'c, T: Copy>(
     columns: &'a mut ColumnsMut<'c, T>,
@@ -93,7 +96,7 @@ pub(crate) fn open_chunk<'a, 'c, T: Copy>(
     (copies, 0)
 }
 
-/// Copies back what was changed in a chunk that [`open_chunk`] has given.
+/// Copies back the rows of a chunk that [`open_chunk`] has copied.
 #[inline(always)]
 pub(crate) fn close_chunk<T: Copy>(
     columns: &mut ColumnsMut<'_, T>,
@@ -109,12 +112,12 @@ pub(crate) fn close_chunk<T: Copy>(
     }
 }
 
-/// The largest of many numbers that are not negative, lane by lane.
+/// The largest of many non-negative numbers, lane by lane.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct Largest<T> {
     lanes: [T; 16],
-    /// Zeros; not numbers where one was not finite, which a maximum would drop.
+    /// Zeros, or NaN in lanes where a number was not finite: a maximum would drop it.
     check: [T; 16],
 }
 
@@ -126,16 +129,16 @@ impl<T: Lanes> Largest<T> {
         }
     }
 
-    /// Takes a register of numbers into account.
+    /// Includes a register of numbers.
     #[inline(always)]
-    pub(crate) fn take<S: Simd>(&mut self, simd: S, numbers: T::Of<S>) {
+    pub(crate) fn include<S: Simd>(&mut self, simd: S, numbers: T::Of<S>) {
         let largest = T::load(simd, &self.lanes).max(numbers);
         T::store::<S>(largest, &mut self.lanes);
         let check = T::load(simd, &self.check) + numbers * numbers.zero();
         T::store::<S>(check, &mut self.check);
     }
 
-    /// The largest so far; not a number if one was not finite.
+    /// Returns the largest number so far, or NaN if one was not finite.
     pub(crate) fn get(&self) -> f64 {
         let (mut largest, mut check) = (T::default(), T::default());
         for (x, bad) in self.lanes.iter().zip(&self.check) {
@@ -146,7 +149,7 @@ impl<T: Lanes> Largest<T> {
     }
 }
 
-/// Writes `numbers`, at least one, and repeats the last.
+/// Writes `numbers`, of which there is at least one, and repeats the last up to the end of `padded`.
 pub(crate) fn pad<T: Copy>(padded: &mut [T], numbers: &[T]) {
     padded[..numbers.len()].copy_from_slice(numbers);
     padded[numbers.len()..].fill(numbers[numbers.len() - 1]);
@@ -154,13 +157,13 @@ pub(crate) fn pad<T: Copy>(padded: &mut [T], numbers: &[T]) {
 
 #[cfg(test)]
 mod tests {
+    use super::super::columns::ColumnsMut;
     use super::{CHUNK, Largest, Padded, close_chunk, open_chunk};
     use crate::dispatch::on_portable;
     use crate::math::Lanes;
-    use crate::particles::ColumnsMut;
 
     #[test]
-    fn the_largest_is_not_lost_nor_what_is_no_number() {
+    fn the_largest_number_and_nan_are_found() {
         let mut numbers = [1.0_f32; 16];
         numbers[3] = 7.0;
         let registers = |bad: f32| {
@@ -172,7 +175,7 @@ mod tests {
             let mut largest = Largest::<f32>::none();
             on_portable!(simd => {
                 for register in registers(bad) {
-                    largest.take(simd, f32::load(simd, &register));
+                    largest.include(simd, f32::load(simd, &register));
                 }
             });
             largest.get()
@@ -184,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_are_not_there_repeat_the_last() {
+    fn a_chunk_that_is_not_full_repeats_its_last_row() {
         let numbers: Vec<f32> = (0..100).map(|i| i as f32).collect();
         let mut padded = Padded::new();
         for (start, count) in [(0, CHUNK), (17, CHUNK), (40, 5), (90, 10), (99, 1)] {
@@ -199,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_past_the_end_is_dropped() {
+    fn numbers_written_past_the_end_are_dropped() {
         let mut numbers = [vec![0.0_f64; 50]];
         let mut columns = ColumnsMut::new(&mut numbers);
         let mut padded = Padded::new();

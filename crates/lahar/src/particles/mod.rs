@@ -1,179 +1,28 @@
-//! Particles: the one table of their fields, storage, and snapshots for everything outside.
+//! Particles: the one table of their fields, and their storage in groups, sorted by block.
+//!
+//! ```text
+//! batch ──append──▶ new rows ──sort──▶ by block ──merge──▶ group ──sort, lazily──▶ group
+//! ```
+
+mod append;
+mod chunk;
+mod columns;
+mod fields;
+mod group;
+mod lattice;
+mod merge;
+mod per_particle;
+mod run;
+mod sort;
 
 pub use crate::array::Data;
 pub use crate::math::Shape;
-
-use crate::material::{DEFORMATION_GRADIENT, Model, SHOWN_VARIABLES, Variable};
-
-mod chunk;
-mod sort;
-mod store;
-
+pub(crate) use append::Placement;
 pub(crate) use chunk::{AHEAD, CHUNK, Chunk, Largest, Padded, Rows, close_chunk, open_chunk, pad};
+pub(crate) use columns::{ColumnsMut, MOST_COLUMNS, slices};
+pub use fields::{FIELDS, Field, FieldInfo, Snapshot};
+pub(crate) use group::{Group, Layout, copy_columns};
+pub(crate) use lattice::{Lattice, block_edge};
+pub(crate) use per_particle::PerParticle;
+pub(crate) use run::{Run, split_runs};
 pub(crate) use sort::{DRIFT_LIMIT, Escaped, Sorter, in_range};
-pub(crate) use store::{
-    BLOCK_LIMIT, ColumnsMut, Group, Layout, MOST_COLUMNS, PerParticle, Run, block_edge, locate,
-    slices, split_runs,
-};
-
-/// What a particle has, as exports, checkpoints and plots name it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Field {
-    /// Number that stays with a particle for life.
-    Id,
-    /// Body it belongs to.
-    Body,
-    /// Material it is made of.
-    Material,
-    /// Where it is.
-    Position,
-    /// Its velocity.
-    Velocity,
-    /// C, the velocity gradient that APIC carries: `[i][j]` = ∂v_i/∂x_j.
-    Affine,
-    /// J = V/V⁰.
-    Jacobian,
-    /// F; of the elastic part for plastic models.
-    DeformationGradient,
-    /// An internal variable of a model, besides J and F; at rest for materials that do not have it.
-    Variable(&'static Variable),
-    /// −tr σ/d of the Cauchy stress.
-    Pressure,
-    /// Its mass.
-    Mass,
-    /// Its volume at rest V⁰.
-    Volume0,
-}
-
-/// One line of the table of fields.
-#[derive(Clone, Copy, Debug)]
-pub struct FieldInfo {
-    /// Which field.
-    pub field: Field,
-    /// Its name in files.
-    pub name: &'static str,
-    /// Its shape.
-    pub shape: Shape,
-    /// Its unit in 3D.
-    pub unit: &'static str,
-}
-
-/// The fields that all particles have, in the order of files.
-const COMMON: [FieldInfo; 11] = {
-    const fn field(
-        field: Field,
-        name: &'static str,
-        shape: Shape,
-        unit: &'static str,
-    ) -> FieldInfo {
-        FieldInfo {
-            field,
-            name,
-            shape,
-            unit,
-        }
-    }
-    [
-        field(Field::Position, "position", Shape::Vector, "m"),
-        field(Field::Velocity, "velocity", Shape::Vector, "m/s"),
-        field(Field::Affine, "affine", Shape::Matrix, "1/s"),
-        field(Field::Jacobian, "J", Shape::Scalar, "1"),
-        field(
-            Field::DeformationGradient,
-            "deformation_gradient",
-            Shape::Matrix,
-            "1",
-        ),
-        field(Field::Pressure, "pressure", Shape::Scalar, "Pa"),
-        field(Field::Mass, "mass", Shape::Scalar, "kg"),
-        field(Field::Volume0, "volume0", Shape::Scalar, "m^3"),
-        field(Field::Material, "material", Shape::Scalar, ""),
-        field(Field::Body, "body", Shape::Scalar, ""),
-        field(Field::Id, "id", Shape::Scalar, ""),
-    ]
-};
-
-/// The number of common fields that stand before the internal variables.
-const BEFORE_VARIABLES: usize = 5;
-
-/// Every field, in the order of files. The internal variables of the built-in models are among them.
-pub const FIELDS: &[FieldInfo] = &{
-    let mut all = [COMMON[0]; COMMON.len() + SHOWN_VARIABLES.len()];
-    let mut i = 0;
-    while i < all.len() {
-        all[i] = if i < BEFORE_VARIABLES {
-            COMMON[i]
-        } else if i < BEFORE_VARIABLES + SHOWN_VARIABLES.len() {
-            Field::of_variable(&SHOWN_VARIABLES[i - BEFORE_VARIABLES])
-        } else {
-            COMMON[i - SHOWN_VARIABLES.len()]
-        };
-        i += 1;
-    }
-    all
-};
-
-impl Field {
-    /// Returns the name, the shape and the unit of the field.
-    pub fn info(self) -> FieldInfo {
-        match self {
-            Self::Variable(variable) => Self::of_variable(variable),
-            field => *COMMON
-                .iter()
-                .find(|info| info.field == field)
-                .expect("all other fields are common"),
-        }
-    }
-
-    const fn of_variable(variable: &'static Variable) -> FieldInfo {
-        FieldInfo {
-            field: Self::Variable(variable),
-            name: variable.name,
-            shape: variable.shape,
-            unit: variable.unit,
-        }
-    }
-
-    /// Returns true if particles of `model` store this field. A model that stores only J has
-    /// F = J^(1/D) I, and a variable that a model does not have is at rest.
-    pub fn is_stored_by(self, model: &Model) -> bool {
-        match self {
-            Self::DeformationGradient => model.variables().contains(&DEFORMATION_GRADIENT),
-            Self::Variable(variable) => model.variables().contains(variable),
-            Self::Id
-            | Self::Body
-            | Self::Material
-            | Self::Position
-            | Self::Velocity
-            | Self::Affine
-            | Self::Jacobian
-            | Self::Pressure
-            | Self::Mass
-            | Self::Volume0 => true,
-        }
-    }
-}
-
-/// A copy of chosen fields at one moment, rows by ascending id.
-#[derive(Clone, Debug)]
-pub struct Snapshot {
-    /// Simulated time \[s\].
-    pub time: f64,
-    /// 2 or 3.
-    pub dimension: usize,
-    /// Rows.
-    pub count: usize,
-    /// The fields asked for, in that order. Positions are `f64` always; what else is real has the
-    /// simulation's precision.
-    pub columns: Vec<(Field, Data)>,
-}
-
-impl Snapshot {
-    /// The numbers of `field`, if it was asked for and any particle has it.
-    pub fn get(&self, field: Field) -> Option<&Data> {
-        self.columns
-            .iter()
-            .find(|(f, _)| *f == field)
-            .map(|(_, data)| data)
-    }
-}

@@ -1,32 +1,38 @@
-//! Particles to blocks.
+//! Sorts the particles of a group by block.
 //!
-//! A counting sort by block. Rows that stay in a block keep their order; those that come in stand
-//! where their old row puts them: the order depends on nothing but the rows themselves. It is lazy:
-//! tiles reach one cell beyond their block on every side, so that rows need to be sorted only when
-//! some particle may have moved by more than that ([`DRIFT_LIMIT`]).
+//! This is a counting sort. Rows of a block are in the order of their old rows, so that the result depends on nothing
+//! but the rows themselves. The sort is lazy: tiles reach one cell beyond their block on every side, so rows are sorted
+//! only when some particle may have moved by more than that ([`DRIFT_LIMIT`]).
 
+use super::columns::ColumnsMut;
+use super::group::Group;
+use super::lattice::{Lattice, block_edge};
+use super::per_particle::PerParticle;
+use super::run::Run;
 use crate::boundary::walls::Walls;
 use crate::math::Lanes;
-use crate::particles::{BLOCK_LIMIT, ColumnsMut, Group, PerParticle, Run, block_edge};
 use core::ops::Range;
 use core::sync::atomic::{AtomicU32, Ordering};
 use std::collections::HashMap;
 
-/// How far, in cells, particles may move before they must be sorted: a little below the tiles'
-/// margin of one cell, for the rounding of sums of steps.
+/// How far particles may move before they must be sorted \[cells\]: a little below the tiles' margin of one cell, for the
+/// rounding of sums of steps.
 pub(crate) const DRIFT_LIMIT: f64 = 0.999;
+
+/// Block coordinates beyond this are out of range: positions that far are a failure.
+const BLOCK_LIMIT: i32 = 1 << 27;
 
 /// Buffers that live from sort to sort.
 #[derive(Default)]
 pub(crate) struct Sorter<T, const D: usize> {
-    /// By old row, its block's number in its piece.
+    /// The number of each old row's block, in the row's piece.
     keys: Vec<u32>,
-    /// By new row, the old one. Pieces write to it side by side, each place once.
+    /// The old row of each new one. Pieces write to it at the same time, each place once.
     source: Vec<AtomicU32>,
     column: Vec<T>,
     ids: Vec<u32>,
     pieces: Vec<Piece<D>>,
-    /// Block, piece, and the block's number in that piece.
+    /// Blocks with their piece, and their number in that piece.
     found: Vec<([i32; D], u32, u32)>,
 }
 
@@ -37,7 +43,7 @@ struct Piece<const D: usize> {
     rows: Range<usize>,
     /// Blocks that rows were found in, by number.
     blocks: Vec<[i32; D]>,
-    /// How many were; then, where the next goes.
+    /// Number of rows in each block; later the place of the block's next row.
     places: Vec<u32>,
     numbers: HashMap<[i32; D], u32>,
 }
@@ -45,14 +51,22 @@ struct Piece<const D: usize> {
 /// The key of a particle that has left through an open side.
 const GONE: u32 = u32::MAX;
 
-/// The smallest number of rows that is worth a piece.
+/// The smallest number of rows that is worth a piece of its own.
 const SMALLEST_PIECE: usize = 1 << 14;
 
-/// What a sort removed.
-#[derive(Clone, Copy, Debug, Default)]
+/// Particles that have left through open sides.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Escaped {
     pub(crate) count: u64,
+    /// Their mass \[kg\].
     pub(crate) mass: f64,
+}
+
+impl core::ops::AddAssign for Escaped {
+    fn add_assign(&mut self, more: Self) {
+        self.count += more.count;
+        self.mass += more.mass;
+    }
 }
 
 impl<T: Lanes, const D: usize> Sorter<T, D> {
@@ -61,20 +75,20 @@ impl<T: Lanes, const D: usize> Sorter<T, D> {
             + size_of::<T>() * self.column.capacity()
     }
 
-    /// Sorts the rows of `group`, whose runs say which block each row's position is relative to.
-    /// Tiles are not yet assigned.
+    /// Sorts the rows of `group`, removes those that have left through open sides, and returns their count and mass. The
+    /// runs are new, without tiles.
     pub(crate) fn sort(
         &mut self,
         group: &mut Group<T, D>,
         walls: &Walls<D>,
-        offset: f64,
+        lattice: &Lattice<D>,
     ) -> Escaped {
         let used = self.cut(&group.runs, group.len());
         self.keys.resize(group.len(), GONE); // each row's is written anew
         let old = Old {
             runs: &group.runs,
             walls,
-            offset,
+            lattice,
         };
         let pieces = &mut self.pieces[..used];
         let columns = ColumnsMut::new(&mut group.columns[..D]);
@@ -92,7 +106,7 @@ impl<T: Lanes, const D: usize> Sorter<T, D> {
             }
         }
 
-        // Blocks in ascending order; where each begins, and in it each piece.
+        // Blocks in ascending order; the first row of each block, and in it of each piece.
         self.found.clear();
         for (piece, number) in pieces.iter().zip(0..) {
             let of_piece = piece.blocks.iter().zip(0..);
@@ -118,7 +132,7 @@ impl<T: Lanes, const D: usize> Sorter<T, D> {
             start = end;
         }
 
-        // Which old row goes to each new one.
+        // The old row of each new row.
         self.source.resize_with(start as usize, AtomicU32::default);
         let (keys, source) = (&self.keys, &self.source);
         crate::parallel::for_chunks(pieces, 1, 0, 1, &|_, pieces: &mut [Piece<D>]| {
@@ -149,7 +163,7 @@ impl<T: Lanes, const D: usize> Sorter<T, D> {
         escaped
     }
 
-    /// Cuts `rows` rows in `runs` into pieces of about as many; returns how many pieces.
+    /// Cuts the `rows` rows of `runs` into pieces of about equal size. Returns the number of pieces.
     fn cut(&mut self, runs: &[Run<D>], rows: usize) -> usize {
         let grain = crate::parallel::grain(rows, SMALLEST_PIECE);
         let (mut used, mut first) = (0, 0);
@@ -171,15 +185,15 @@ impl<T: Lanes, const D: usize> Sorter<T, D> {
     }
 }
 
-/// What was known of rows when they were sorted before.
+/// The order of rows before the sort.
 struct Old<'a, const D: usize> {
     runs: &'a [Run<D>],
     walls: &'a Walls<D>,
-    offset: f64,
+    lattice: &'a Lattice<D>,
 }
 
 impl<const D: usize> Old<'_, D> {
-    /// Finds the blocks of all `pieces`' rows; `positions` and `keys` begin with row `first_row`.
+    /// Finds the blocks of the rows of `pieces`; `positions` and `keys` begin with row `first_row`.
     fn assign<T: Lanes>(
         &self,
         pieces: &mut [Piece<D>],
@@ -203,8 +217,8 @@ impl<const D: usize> Old<'_, D> {
         }
     }
 
-    /// Finds the block of each row, makes its position relative to that block, and numbers the
-    /// blocks as they are met. `positions` and `keys` are the piece's.
+    /// Finds the block of each row of a piece, makes the position relative to that block, and numbers the blocks in the
+    /// order of their first row. `positions` and `keys` are those of the piece.
     fn assign_piece<T: Lanes>(
         &self,
         piece: &mut Piece<D>,
@@ -219,12 +233,14 @@ impl<const D: usize> Old<'_, D> {
         let has_periods = self.walls.period.iter().any(Option::is_some);
         let mut last = ([i32::MAX; D], GONE);
         for run in &self.runs[piece.runs.clone()] {
-            // The number of the run's own block, where most rows stay, once it is known.
+            // The number of the block that most rows stay in, once it is known.
             let mut own = GONE;
             for row in run.rows() {
                 let at = row - piece.rows.start;
                 let mut u: [T; D] = core::array::from_fn(|axis| positions[axis][at]);
-                if has_open && has_left(&self.cells(run.block, u), self.walls) {
+                if has_open
+                    && has_left(&self.lattice.cells(run.block, u.map(T::to_f64)), self.walls)
+                {
                     keys[at] = GONE;
                     continue;
                 }
@@ -259,23 +275,16 @@ impl<const D: usize> Old<'_, D> {
             }
         }
     }
-
-    /// A position as stored, in cells from node 0.
-    fn cells<T: Lanes>(&self, block: [i32; D], u: [T; D]) -> [f64; D] {
-        let edge = block_edge(D) as f64;
-        core::array::from_fn(|axis| {
-            u[axis].to_f64() + self.offset + edge * (f64::from(block[axis]) + 0.5)
-        })
-    }
 }
 
-/// The block, on one axis, of a position stored as `u` relative to `block`, and how it is stored there.
+/// Finds the block, on one axis, of a position that is stored as `u` relative to `block`. Returns it with the position
+/// relative to it.
 fn relocate<T: Lanes, const D: usize>(block: i32, u: T, period: Option<i64>) -> (i32, T) {
     let edge = block_edge(D) as i64;
     let half = T::from_f64(0.5 * edge as f64);
     let whole = T::from_f64(edge as f64);
     let shift = ((u + half) / whole).floor();
-    // Exact: whole numbers of this size are, and the result is no larger.
+    // Exact: the shift is a whole number of this size, and the result is no larger than `u`.
     let u = u - shift * whole;
     let block = block + shift.to_f64() as i32;
     if let Some(period) = period {
@@ -290,6 +299,7 @@ fn relocate<T: Lanes, const D: usize>(block: i32, u: T, period: Option<i64>) -> 
     (block, u)
 }
 
+/// Returns true if a position has passed an open side.
 fn has_left<const D: usize>(cells: &[f64; D], walls: &Walls<D>) -> bool {
     (0..D).any(|axis| {
         walls.open[axis].0.is_some_and(|low| cells[axis] < low)
@@ -303,13 +313,13 @@ fn permute<U: Copy + Default + Send + Sync>(
     column: &mut Vec<U>,
     buffer: &mut Vec<U>,
 ) {
-    buffer.resize(source.len(), U::default()); // what it holds is replaced
+    buffer.resize(source.len(), U::default()); // every number is replaced
     let from = &column[..];
     crate::parallel::for_chunks(
         buffer,
         1,
         0,
-        crate::parallel::grain(source.len(), 1 << 14),
+        crate::parallel::grain(source.len(), SMALLEST_PIECE),
         &|first, piece| {
             for (value, row) in piece.iter_mut().zip(&source[first..]) {
                 *value = from[row.load(Ordering::Relaxed) as usize];
@@ -319,7 +329,7 @@ fn permute<U: Copy + Default + Send + Sync>(
     core::mem::swap(column, buffer);
 }
 
-/// Whether a block can be named.
+/// Returns true if the coordinates of `block` are in range.
 pub(crate) fn in_range<const D: usize>(block: [i32; D]) -> bool {
     block
         .iter()

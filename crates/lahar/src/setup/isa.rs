@@ -1,24 +1,35 @@
-//! Instruction sets that the engine can be told to run on.
+//! Instruction sets that the engine can run on.
 
 use crate::dispatch;
 use fearless_simd::Level;
 
-/// Instruction sets. The same scene gives the same bits on one of them, and on
-/// [`Isa::Portable`] on every machine.
+/// An instruction set. On one instruction set, the same scene gives the same bits; on [`Isa::Portable`], it does so
+/// on every machine.
+///
+/// ```
+/// use lahar::Isa;
+///
+/// assert!(Isa::Portable.is_available());
+/// assert!(Isa::detect().is_available());
+/// assert_eq!(Isa::Avx2.name(), "avx2");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Isa {
     /// The compile target's baseline, without fused multiply-adds.
     Portable,
-    /// AVX2 with FMA.
+    /// AVX2 with FMA, on x86.
     Avx2,
-    /// AVX-512 (Ice Lake and later).
+    /// AVX-512 of Ice Lake and later, on x86.
     Avx512,
-    /// AArch64's vectors.
+    /// Advanced SIMD of AArch64.
     Neon,
 }
 
 impl Isa {
-    /// The widest that this machine has.
+    /// All instruction sets, also those that this machine lacks.
+    pub const ALL: [Self; 4] = [Self::Portable, Self::Avx2, Self::Avx512, Self::Neon];
+
+    /// Finds the widest instruction set of this machine.
     pub fn detect() -> Self {
         [Self::Avx512, Self::Avx2, Self::Neon]
             .into_iter()
@@ -26,12 +37,12 @@ impl Isa {
             .unwrap_or(Self::Portable)
     }
 
-    /// Whether this machine can run it.
+    /// Returns true if this machine has it.
     pub fn is_available(self) -> bool {
         self.level().is_some()
     }
 
-    /// As written in scenes and on the command line.
+    /// The name in scenes and on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Portable => "portable",
@@ -41,19 +52,16 @@ impl Isa {
         }
     }
 
-    /// All of them, whether this machine has them or not.
-    pub const ALL: [Self; 4] = [Self::Portable, Self::Avx2, Self::Avx512, Self::Neon];
-
-    /// The compiled level of this instruction set, if this machine has it.
+    /// Returns the token that code for this instruction set is entered with, if this machine has it.
     pub(crate) fn level(self) -> Option<Level> {
         match self {
-            Isa::Portable => Some(dispatch::portable()),
+            Self::Portable => Some(dispatch::portable()),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Isa::Avx2 => Level::new().as_avx2().map(Level::Avx2),
+            Self::Avx2 => Level::new().as_avx2().map(Level::Avx2),
             #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-            Isa::Avx512 => Level::new().as_avx512().map(Level::Avx512),
+            Self::Avx512 => Level::new().as_avx512().map(Level::Avx512),
             #[cfg(target_arch = "aarch64")]
-            Isa::Neon => Level::new().as_neon().map(Level::Neon),
+            Self::Neon => Level::new().as_neon().map(Level::Neon),
             _ => None,
         }
     }

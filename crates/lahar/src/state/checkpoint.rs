@@ -8,19 +8,21 @@
 //! kept. Reading believes nothing: an array that is missing, of another length, not finite or out of place is
 //! an error by its name.
 
+use super::State;
+use super::probes::Readings;
 pub use crate::array::{Array, Values};
 use crate::boundary::impulse::Taken;
 use crate::instance::Instance;
+use crate::math::Lanes;
 use crate::math::Vector;
-use crate::particles::{DRIFT_LIMIT, Escaped, in_range};
-use crate::particles::{Group, Layout, PerParticle, Run, block_edge};
-use crate::setup::ProbeSample;
-use crate::setup::{Pointer, PointerAction};
-use crate::simulation::Simulation;
-use crate::state::probe::Readings;
-use crate::state::{Rows, State};
+use crate::particles::{
+    DRIFT_LIMIT, Escaped, Group, Layout, PerParticle, Run, block_edge, copy_columns, in_range,
+};
+use crate::setup::check::CheckedSetup;
+use crate::setup::{Pointer, PointerAction, Probe, ProbeSample};
 use crate::transfer::gather::MOST_CELLS;
 use core::fmt;
+use std::sync::Arc;
 
 /// The state of a simulation between two frames.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,10 +79,10 @@ fn shape_of<T>(of: &PerParticle<T>) -> Vec<usize> {
     }
 }
 
-fn numbers_of<T>(of: PerParticle<T>) -> Vec<T> {
+fn numbers_of<T: Copy>(of: &PerParticle<T>) -> Vec<T> {
     match of {
-        PerParticle::Uniform(value) => vec![value],
-        PerParticle::Each(values) => values,
+        PerParticle::Uniform(value) => vec![*value],
+        PerParticle::Each(values) => values.clone(),
     }
 }
 
@@ -136,71 +138,64 @@ fn pointer_from([x, y, z, radius, softening, kind, a, b, c]: [f64; POINTER]) -> 
     })
 }
 
-/// A state, and where particles started if that is asked for.
-type Kept<T, const D: usize> = (State<T, D>, Option<Vec<[f64; D]>>);
-
-impl<T: Instance<D>, const D: usize> Simulation<T, D> {
-    pub(crate) fn write(&self) -> Checkpoint {
-        // By name, so that a new field asks for its array.
-        let State {
+impl<T: Instance<D>, const D: usize> State<T, D> {
+    /// Returns the state as arrays.
+    pub(crate) fn to_checkpoint(&self, scene: &CheckedSetup<D>) -> Checkpoint {
+        // Each field by name, so that a new one asks for its array.
+        let Self {
             groups,
             drift,
-            uncorrected,
-            taken,
+            time_since_correction,
+            boundary_totals,
             readings,
             escaped,
             control,
             next_id,
             gravity,
             pointer,
-        } = self.save(None);
+            starts,
+        } = self;
         let mut out = Out::default();
         let (numbers, counts) = control.numbers();
         out.put("step", &[numbers.len()], Values::F64(numbers.to_vec()));
         out.put("counts", &[counts.len()], Values::U64(counts.to_vec()));
-        out.number("drift", drift);
-        out.number("uncorrected", uncorrected);
+        out.number("drift", *drift);
+        out.number("uncorrected", *time_since_correction);
         out.put("gravity", &[D], Values::F64(gravity.to_vec()));
         let hand = pointer.as_ref().map(pointer_numbers);
         let hand = hand.map_or_else(Vec::new, |hand| hand.to_vec());
         out.put("pointer", &[hand.len()], Values::F64(hand));
-        out.put("next_id", &[], Values::U32(vec![next_id]));
+        out.put("next_id", &[], Values::U32(vec![*next_id]));
         out.put("escaped.count", &[], Values::U64(vec![escaped.count]));
         out.number("escaped.mass", escaped.mass);
         let flat = |taken: &Taken<D>| taken.impulse.0.into_iter().chain(taken.angular);
         out.put(
             "taken",
-            &[taken.len(), D + 3],
-            Values::F64(taken.iter().flat_map(flat).collect()),
+            &[boundary_totals.len(), D + 3],
+            Values::F64(boundary_totals.iter().flat_map(flat).collect()),
         );
-        for (index, readings) in readings.into_iter().enumerate() {
-            let (time, impulse) = readings.last;
-            let last = [time, impulse[0], impulse[1], impulse[2], readings.pressed];
-            let name = format!("probes.{index}.last");
-            out.put(name, &[last.len()], Values::F64(last.to_vec()));
-            let width = 1 + self.setup.probes[index].gauge.columns().len();
-            let count = readings.samples.len();
-            let flat = |sample: ProbeSample| core::iter::once(sample.time).chain(sample.values);
-            let samples = readings.samples.into_iter().flat_map(flat).collect();
-            let name = format!("probes.{index}.samples");
-            out.put(name, &[count, width], Values::F64(samples));
+        for (index, readings) in readings.iter().enumerate() {
+            write_readings(&mut out, scene, index, readings);
         }
-        if let Some(starts) = &self.starts {
-            let shape = [starts.len(), D];
-            out.put(
-                "starts",
-                &shape,
-                Values::F64(starts.as_flattened().to_vec()),
-            );
+        if let Some(starts) = starts {
+            let values = Values::F64(starts.as_flattened().to_vec());
+            out.put("starts", &[starts.len(), D], values);
         }
-        for (index, rows) in groups.into_iter().enumerate() {
-            write_rows(&mut out, &format!("materials.{index}"), rows);
+        for (index, group) in groups.iter().enumerate() {
+            write_group(&mut out, &format!("materials.{index}"), group);
         }
         Checkpoint { arrays: out.0 }
     }
 
-    /// What is in `checkpoint`.
-    pub(crate) fn read(&self, checkpoint: Checkpoint) -> Result<Kept<T, D>, CheckpointError> {
+    /// Reads the state in `checkpoint`, which must be of the setup that this state is of.
+    ///
+    /// # Errors
+    /// Names an array that is not of such a state.
+    pub(crate) fn from_checkpoint(
+        &self,
+        scene: &CheckedSetup<D>,
+        checkpoint: Checkpoint,
+    ) -> Result<Self, CheckpointError> {
         let mut arrays = In(checkpoint.arrays);
         let Some(control) = self
             .control
@@ -211,11 +206,11 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         let next_id = arrays.id("next_id")?;
         // Beyond the limit rows are sorted before anything else is done, and no substep moves them further.
         let drift = arrays.number("drift", 0.0..=DRIFT_LIMIT + MOST_CELLS)?;
-        let state = State {
+        let mut state = Self {
             drift,
-            uncorrected: arrays.number("uncorrected", 0.0..=f64::MAX)?,
-            taken: self.read_taken(&mut arrays)?,
-            readings: self.read_readings(&mut arrays)?,
+            time_since_correction: arrays.number("uncorrected", 0.0..=f64::MAX)?,
+            boundary_totals: self.read_totals(&mut arrays)?,
+            readings: read_readings(&mut arrays, scene)?,
             escaped: Escaped {
                 count: arrays.counts::<1>("escaped.count")?[0],
                 mass: arrays.number("escaped.mass", 0.0..=f64::MAX)?,
@@ -224,69 +219,51 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             next_id,
             gravity: arrays.numbers("gravity")?,
             pointer: arrays.pointer()?,
-            groups: (self.groups.iter().enumerate())
-                .map(|(index, group)| {
-                    read_rows(
-                        &mut arrays,
-                        &format!("materials.{index}"),
-                        group,
-                        (next_id, drift),
-                    )
-                })
-                .collect::<Result<_, _>>()?,
+            groups: Vec::with_capacity(self.groups.len()),
+            starts: None,
         };
-        for (index, rows) in state.groups.iter().enumerate() {
-            self.check_places(&format!("materials.{index}.runs.block"), rows)?;
+        for (index, group) in self.groups.iter().enumerate() {
+            let of = format!("materials.{index}");
+            let group = read_group(&mut arrays, &of, group, (next_id, drift))?;
+            state.groups.push(group);
         }
+        for (index, group) in state.groups.iter().enumerate() {
+            check_places(&format!("materials.{index}.runs.block"), scene, group)?;
+        }
+        state.check_ids()?;
+        if self.starts.is_some() {
+            let (shape, values) = arrays.f64s("starts")?;
+            if shape != [next_id as usize, D] {
+                return wrong("starts", "is not as long as there are ids");
+            }
+            state.starts = Some(Arc::new(values.as_chunks().0.to_vec()));
+        }
+        match arrays.0.first() {
+            Some(more) => wrong(&more.name, "does not belong to this scene"),
+            None => Ok(state),
+        }
+    }
+
+    /// Checks that no id is there twice, and that an id that is not there has left.
+    fn check_ids(&self) -> Result<(), CheckpointError> {
         let mut ids: Vec<u32> = Vec::new();
-        for rows in &state.groups {
-            ids.extend(&rows.id);
+        for group in &self.groups {
+            ids.extend(&group.id);
         }
         ids.sort_unstable();
         if let Some(pair) = ids.windows(2).find(|pair| pair[0] == pair[1]) {
             return wrong("id", format!("there are two particles {}", pair[0]));
         }
-        // Who has an id and is not here has left.
-        if state.escaped.count.checked_add(ids.len() as u64) != Some(u64::from(next_id)) {
+        let known = self.escaped.count.checked_add(ids.len() as u64);
+        if known != Some(u64::from(self.next_id)) {
             return wrong("next_id", "is not the number of particles there and gone");
-        }
-        let starts = match self.starts {
-            Some(_) => {
-                let (shape, values) = arrays.f64s("starts")?;
-                if shape != [next_id as usize, D] {
-                    return wrong("starts", "is not as long as there are ids");
-                }
-                Some(values.as_chunks().0.to_vec())
-            }
-            None => None,
-        };
-        match arrays.0.first() {
-            Some(more) => wrong(&more.name, "does not belong to this scene"),
-            None => Ok((state, starts)),
-        }
-    }
-
-    /// Whether rows are where walls hold them: the next substep would put them there, out of reach of their tile.
-    fn check_places(&self, name: &str, rows: &Rows<T, D>) -> Result<(), CheckpointError> {
-        let edge = block_edge(D) as f64;
-        for run in &rows.runs {
-            for axis in 0..D {
-                let (low, high) = self.walls.hold[axis];
-                let middle = self.scheme.offset() + edge * (f64::from(run.block[axis]) + 0.5);
-                let low = low.map_or(f64::NEG_INFINITY, |low| low - middle - ROUNDING);
-                let high = high.map_or(f64::INFINITY, |high| high - middle + ROUNDING);
-                let places = &rows.columns[axis][run.rows()];
-                if !places.iter().all(|x| (low..=high).contains(&x.to_f64())) {
-                    return wrong(name, "has rows outside of the walls");
-                }
-            }
         }
         Ok(())
     }
 
-    fn read_taken(&self, arrays: &mut In) -> Result<Vec<Taken<D>>, CheckpointError> {
+    fn read_totals(&self, arrays: &mut In) -> Result<Vec<Taken<D>>, CheckpointError> {
         let (shape, values) = arrays.f64s("taken")?;
-        if shape != [self.taken.len(), D + 3] {
+        if shape != [self.boundary_totals.len(), D + 3] {
             return wrong("taken", "is not of this scene's walls and colliders");
         }
         let one = |row: &[f64]| Taken {
@@ -295,62 +272,104 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
         };
         Ok(values.chunks_exact(D + 3).map(one).collect())
     }
-
-    fn read_readings(&self, arrays: &mut In) -> Result<Vec<Readings>, CheckpointError> {
-        let one = |(index, probe): (usize, &crate::Probe<D>)| {
-            let [time, x, y, z, pressed] = arrays.numbers(&format!("probes.{index}.last"))?;
-            let name = format!("probes.{index}.samples");
-            let (shape, values) = arrays.f64s(&name)?;
-            let width = 1 + probe.gauge.columns().len();
-            if shape.len() != 2 || shape[1] != width {
-                return wrong(&name, format!("is not of the probe \"{}\"", probe.name));
-            }
-            let sample = |row: &[f64]| ProbeSample {
-                time: row[0],
-                values: row[1..].to_vec(),
-            };
-            Ok(Readings {
-                samples: values.chunks_exact(width).map(sample).collect(),
-                last: (time, [x, y, z]),
-                pressed,
-            })
-        };
-        self.setup.probes.iter().enumerate().map(one).collect()
-    }
 }
 
-fn write_rows<T: Instance<D>, const D: usize>(out: &mut Out, of: &str, rows: Rows<T, D>) {
-    let Rows {
-        bulk_modulus,
+/// Checks that rows are where walls keep them: the next substep would put them there, out of reach of their tile.
+fn check_places<T: Lanes, const D: usize>(
+    name: &str,
+    scene: &CheckedSetup<D>,
+    group: &Group<T, D>,
+) -> Result<(), CheckpointError> {
+    for run in &group.runs {
+        let middle = scene.lattice.middle(run.block);
+        for (axis, middle) in middle.into_iter().enumerate() {
+            let (low, high) = scene.walls.hold[axis];
+            let low = low.map_or(f64::NEG_INFINITY, |low| low - middle - ROUNDING);
+            let high = high.map_or(f64::INFINITY, |high| high - middle + ROUNDING);
+            let places = &group.columns[axis][run.rows()];
+            if !places.iter().all(|x| (low..=high).contains(&x.to_f64())) {
+                return wrong(name, "has rows outside of the walls");
+            }
+        }
+    }
+    Ok(())
+}
+
+fn write_readings<const D: usize>(
+    out: &mut Out,
+    scene: &CheckedSetup<D>,
+    index: usize,
+    readings: &Readings,
+) {
+    let (time, impulse) = readings.last;
+    let last = [time, impulse[0], impulse[1], impulse[2], readings.pressed];
+    let name = format!("probes.{index}.last");
+    out.put(name, &[last.len()], Values::F64(last.to_vec()));
+    let width = 1 + scene.setup.probes[index].gauge.columns().len();
+    let count = readings.samples.len();
+    let flat = |sample: &ProbeSample| [&[sample.time], sample.values.as_slice()].concat();
+    let samples = readings.samples.iter().flat_map(flat).collect();
+    let name = format!("probes.{index}.samples");
+    out.put(name, &[count, width], Values::F64(samples));
+}
+
+fn read_readings<const D: usize>(
+    arrays: &mut In,
+    scene: &CheckedSetup<D>,
+) -> Result<Vec<Readings>, CheckpointError> {
+    let one = |(index, probe): (usize, &Probe<D>)| {
+        let [time, x, y, z, pressed] = arrays.numbers(&format!("probes.{index}.last"))?;
+        let name = format!("probes.{index}.samples");
+        let (shape, values) = arrays.f64s(&name)?;
+        let width = 1 + probe.gauge.columns().len();
+        if shape.len() != 2 || shape[1] != width {
+            return wrong(&name, format!("is not of the probe \"{}\"", probe.name));
+        }
+        let sample = |row: &[f64]| ProbeSample {
+            time: row[0],
+            values: row[1..].to_vec(),
+        };
+        Ok(Readings {
+            samples: values.chunks_exact(width).map(sample).collect(),
+            last: (time, [x, y, z]),
+            pressed,
+        })
+    };
+    scene.setup.probes.iter().enumerate().map(one).collect()
+}
+
+fn write_group<T: Instance<D>, const D: usize>(out: &mut Out, of: &str, group: &Group<T, D>) {
+    let Group {
+        law,
+        density: _,     // of the setup
+        sound_speed: _, // of the law
         columns,
         mass,
         volume0,
         id,
         body,
         runs,
-    } = rows;
-    let stiffness: Vec<f64> = bulk_modulus.into_iter().collect();
+    } = group;
+    let stiffness: Vec<f64> = law.bulk_modulus().into_iter().collect();
     out.put(
         format!("{of}.bulk_modulus"),
         &[stiffness.len()],
         Values::F64(stiffness),
     );
-    for (column, values) in columns.into_iter().enumerate() {
+    let mut copies = Vec::new();
+    copy_columns(&mut copies, columns);
+    for (column, values) in copies.into_iter().enumerate() {
         let (what, component) = column_name(column, D);
         let name = format!("{of}.{what}.{component}");
         out.put(name, &[values.len()], T::values(values));
     }
     for (what, values) in [("mass", mass), ("volume0", volume0)] {
-        let shape = shape_of(&values);
-        out.put(
-            format!("{of}.{what}"),
-            &shape,
-            T::values(numbers_of(values)),
-        );
+        let values_of = T::values(numbers_of(values));
+        out.put(format!("{of}.{what}"), &shape_of(values), values_of);
     }
-    out.put(format!("{of}.id"), &[id.len()], Values::U32(id));
-    let shape = shape_of(&body);
-    out.put(format!("{of}.body"), &shape, Values::U32(numbers_of(body)));
+    out.put(format!("{of}.id"), &[id.len()], Values::U32(id.clone()));
+    let bodies = Values::U32(numbers_of(body));
+    out.put(format!("{of}.body"), &shape_of(body), bodies);
     let blocks = runs.iter().flat_map(|run| run.block).collect();
     out.put(
         format!("{of}.runs.block"),
@@ -365,12 +384,12 @@ fn write_rows<T: Instance<D>, const D: usize>(out: &mut Out, of: &str, rows: Row
     );
 }
 
-fn read_rows<T: Instance<D>, const D: usize>(
+fn read_group<T: Instance<D>, const D: usize>(
     arrays: &mut In,
     of: &str,
     group: &Group<T, D>,
     (next_id, drift): (u32, f64),
-) -> Result<Rows<T, D>, CheckpointError> {
+) -> Result<Group<T, D>, CheckpointError> {
     let name = format!("{of}.id");
     let (_, id) = arrays.take(&name, Values::u32s)?;
     let count = id.len();
@@ -413,14 +432,20 @@ fn read_rows<T: Instance<D>, const D: usize>(
         (Some(_), &[stiffness]) if stiffness > 0.0 && stiffness.is_finite() => Some(stiffness),
         _ => return wrong(&name, "is not that of this material"),
     };
-    Ok(Rows {
-        bulk_modulus,
+    let mut read = group.without_particles();
+    if let Some(bulk_modulus) = bulk_modulus
+        && group.law.bulk_modulus() != Some(bulk_modulus)
+    {
+        read.set_law(group.law.with_bulk_modulus(bulk_modulus).into());
+    }
+    Ok(Group {
         columns,
         mass,
         volume0,
         id,
         body,
         runs: read_runs(arrays, of, count)?,
+        ..read
     })
 }
 

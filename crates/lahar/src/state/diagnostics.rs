@@ -1,10 +1,12 @@
 //! What the whole of the particles comes to: one row of diagnostics.csv. In f64, in a fixed order.
 
+use super::State;
+use super::workspace::Workspace;
 use crate::instance::Instance;
 use crate::parallel;
-use crate::particles::{Group, Layout, PerParticle, Run};
-use crate::setup::Transfer;
-use crate::simulation::{Simulation, three};
+use crate::particles::{DRIFT_LIMIT, Group, Layout, PerParticle, Run};
+use crate::setup::check::CheckedSetup;
+use crate::setup::{Transfer, to_3d};
 
 /// Totals at one moment. Vectors have three components; in 2D the third is zero, and angular
 /// momentum is its third component.
@@ -14,7 +16,7 @@ pub struct Diagnostics {
     pub time: f64,
     /// Substeps since the start.
     pub substeps: u64,
-    /// Shortest substep since the last row \[s\].
+    /// Shortest substep since the frame began \[s\]; 0 if there was none.
     pub dt_min: f64,
     /// What limited it.
     pub dt_limit: &'static str,
@@ -44,32 +46,50 @@ pub struct Diagnostics {
     pub escaped_mass: f64,
 }
 
-/// A row, now. The particles must be inside their tiles.
+/// Measures the totals. If the next substep would sort, they are those of a sorted copy, so that sums have the
+/// same order whoever asks and whenever.
 pub(crate) fn measure<T: Instance<D>, const D: usize>(
-    simulation: &mut Simulation<T, D>,
+    scene: &CheckedSetup<D>,
+    state: &State<T, D>,
+    workspace: &Workspace<T, D>,
 ) -> Diagnostics {
-    let volume = filled_volume(simulation);
-    let control = &mut simulation.control;
-    let (dt_min, dt_limit) = control.shortest_since_asked();
+    // A grid of its own, since P2G of volumes writes to the tiles.
+    let mut workspace = workspace.for_measuring();
+    if state.drift > DRIFT_LIMIT {
+        let mut sorted = state.clone();
+        workspace.sort_if_drifted(scene, &mut sorted);
+        measure_sorted(scene, &sorted, &mut workspace)
+    } else {
+        measure_sorted(scene, state, &mut workspace)
+    }
+}
+
+/// Measures the totals of particles that are inside of their blocks' tiles.
+fn measure_sorted<T: Instance<D>, const D: usize>(
+    scene: &CheckedSetup<D>,
+    state: &State<T, D>,
+    workspace: &mut Workspace<T, D>,
+) -> Diagnostics {
+    let control = &state.control;
+    let (dt_min, dt_limit) = control.shortest();
     let mut row = Diagnostics {
         time: control.time(),
         substeps: control.substeps,
         dt_min,
         dt_limit: dt_limit.name(),
-        volume,
-        escaped: simulation.escaped.count,
-        escaped_mass: simulation.escaped.mass,
+        volume: workspace.filled_volume(state),
+        escaped: state.escaped.count,
+        escaped_mass: state.escaped.mass,
         ..Diagnostics::default()
     };
-    let dx = simulation.setup.dx;
-    let spin = match simulation.setup.transfer {
-        Transfer::Apic if simulation.scheme.inverse_inertia().is_finite() => {
-            dx * dx / simulation.scheme.inverse_inertia()
-        }
-        _ => 0.0,
+    let dx = scene.lattice.dx;
+    let per_inertia = scene.setup.kernel.inverse_inertia();
+    let spin = match scene.setup.transfer {
+        Transfer::Apic if per_inertia.is_finite() => dx * dx / per_inertia,
+        Transfer::Apic | Transfer::Pic | Transfer::Flip { .. } => 0.0,
     };
     let mut total = Totals::default();
-    for group in &simulation.groups {
+    for group in &state.groups {
         row.particles += group.len() as u64;
         row.mass += match &group.mass {
             PerParticle::Uniform(mass) => mass.to_f64() * group.len() as f64,
@@ -81,7 +101,7 @@ pub(crate) fn measure<T: Instance<D>, const D: usize>(
         parallel::for_chunks(&mut of_blocks, 1, 0, grain, &|first, piece| {
             let mut strain = vec![0.0; group.law.strain_columns()];
             for (run, totals) in group.runs[first..].iter().zip(piece) {
-                *totals = Totals::of(simulation, group, run, spin, &mut strain);
+                *totals = Totals::of(scene, state.gravity, group, run, spin, &mut strain);
             }
         });
         for block in &of_blocks {
@@ -119,18 +139,19 @@ struct Totals {
 impl Totals {
     /// Of one block's particles; `strain` is room for one's.
     fn of<T: Instance<D>, const D: usize>(
-        simulation: &Simulation<T, D>,
+        scene: &CheckedSetup<D>,
+        gravity: [f64; D],
         group: &Group<T, D>,
         run: &Run<D>,
         spin: f64,
         strain: &mut [f64],
     ) -> Self {
-        let gravity = three(simulation.setup.gravity);
+        let gravity = to_3d(gravity);
         let at = |column: usize, p: usize| group.columns[column][p].to_f64();
         let mut totals = Self::default();
         for p in run.rows() {
-            let x = three(simulation.position(group, run.block, p));
-            let v = three(core::array::from_fn::<f64, D, _>(|axis| {
+            let x = to_3d(group.position(&scene.lattice, run.block, p));
+            let v = to_3d(core::array::from_fn::<f64, D, _>(|axis| {
                 at(Layout::velocity(D) + axis, p)
             }));
             let c = |i: usize, j: usize| {
@@ -177,13 +198,4 @@ impl Totals {
         self.max_speed_squared = self.max_speed_squared.max(other.max_speed_squared);
         self.particle_volume += other.particle_volume;
     }
-}
-
-/// Σ over nodes of min(1, rest volume at the node / dxᴰ) dxᴰ: the space that is filled.
-pub(crate) fn filled_volume<T: Instance<D>, const D: usize>(
-    simulation: &mut Simulation<T, D>,
-) -> f64 {
-    simulation.rest_volume_to_grid();
-    let cell = simulation.setup.dx.powi(D as i32);
-    simulation.grid.over_nodes(|volume| volume.min(cell))
 }

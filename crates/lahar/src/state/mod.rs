@@ -1,179 +1,189 @@
-//! All that decides how a simulation goes on, besides its setup: what is kept to go back to, in memory
-//! (retry.rs) or as named arrays (checkpoint.rs).
+//! The state: all that decides how a simulation goes on, besides its setup.
 //!
 //! ```text
-//! Simulation ──save──▶ State ──restore──▶ Simulation
-//!   grid, tiles, buffers: not kept, since they follow from where the runs are
+//! Setup ──check──▶ CheckedSetup ─┐
+//!                     State ─────┼──substep──▶ State
+//!                 Workspace ─────┘
 //! ```
+//! A state can be cloned, which is what a retry of a frame goes back to ([`retry`]); turned into named arrays
+//! and back ([`checkpoint`]); and compared. The [`workspace`] holds the rest: buffers that can be dropped and
+//! made again from the state.
 
+pub(crate) mod accelerations;
+pub(crate) mod add;
 pub mod checkpoint;
 pub mod diagnostics;
-pub(crate) mod probe;
+mod gauges;
+pub(crate) mod limits;
+pub(crate) mod probes;
 pub(crate) mod retry;
+pub(crate) mod sensor;
 pub(crate) mod snapshot;
 pub(crate) mod time_step;
+pub(crate) mod workspace;
 
+use crate::boundary::BoundaryImpulse;
 use crate::boundary::impulse::Taken;
-use crate::instance::Instance;
-use crate::math::Lanes;
-use crate::parallel;
-use crate::particles::Escaped;
-use crate::particles::{Group, PerParticle, Run};
-use crate::setup::Pointer;
-use crate::simulation::Simulation;
-use crate::state::probe::Readings;
-use crate::state::time_step::StepControl;
+use crate::material::Law;
+use crate::math::{Lanes, Vector};
+use crate::particles::{Escaped, Group, Layout};
+use crate::setup::check::CheckedSetup;
+use crate::setup::{Command, Pointer, to_3d};
+use probes::Readings;
+use std::sync::Arc;
+use time_step::StepControl;
 
-/// The state between two substeps. Rows are kept in their order and sorted as long ago as they are:
-/// what follows has the same bits.
-pub(crate) struct State<T, const D: usize> {
-    pub(crate) groups: Vec<Rows<T, D>>,
+/// The state between two substeps. Rows keep their order and the age of their last sort, so that a copy goes on
+/// with the same bits.
+#[derive(PartialEq)]
+pub(crate) struct State<T: Lanes, const D: usize> {
+    /// The particles, by material.
+    pub(crate) groups: Vec<Group<T, D>>,
+    /// A bound on the distance that any particle has moved since the last sort \[cells\].
     pub(crate) drift: f64,
-    pub(crate) uncorrected: f64,
-    pub(crate) taken: Vec<Taken<D>>,
+    /// Time since the fluids' volumes were last corrected \[s\].
+    pub(crate) time_since_correction: f64,
+    /// What each boundary has taken since the start, by the number of the domain's side and then by collider;
+    /// lengths in meters.
+    pub(crate) boundary_totals: Vec<Taken<D>>,
+    /// Readings of each probe that nobody has asked for yet.
     pub(crate) readings: Vec<Readings>,
+    /// Particles that have left since the start.
     pub(crate) escaped: Escaped,
+    /// Clock and time step.
     pub(crate) control: StepControl,
+    /// The id of the next new particle.
     pub(crate) next_id: u32,
+    /// Gravity at present \[m/s²\].
     pub(crate) gravity: [f64; D],
     pub(crate) pointer: Option<Pointer>,
+    /// Start of each particle \[m\], by id, if a force asks for it. Grows only when particles are added, so that
+    /// copies share it.
+    pub(crate) starts: Option<Arc<Vec<[f64; D]>>>,
 }
 
-/// The particles of a group.
-pub(crate) struct Rows<T, const D: usize> {
-    /// Of the law, if it can be changed \[Pa\].
-    pub(crate) bulk_modulus: Option<f64>,
-    pub(crate) columns: Vec<Vec<T>>,
-    pub(crate) mass: PerParticle<T>,
-    pub(crate) volume0: PerParticle<T>,
-    pub(crate) id: Vec<u32>,
-    pub(crate) body: PerParticle<u32>,
-    pub(crate) runs: Vec<Run<D>>,
-}
-
-impl<T: Lanes, const D: usize> State<T, D> {
-    /// What the next copy takes, and what it has taken \[bytes\].
-    pub(crate) fn bytes(&self) -> usize {
-        let rows = |rows: &Rows<T, D>| {
-            let columns = rows.columns.iter().map(Vec::capacity).sum::<usize>();
-            size_of::<T>() * (columns + rows.mass.each() + rows.volume0.each())
-                + size_of::<u32>() * (rows.id.capacity() + rows.body.each())
-                + size_of::<Run<D>>() * rows.runs.capacity()
+impl<T: Lanes, const D: usize> Clone for State<T, D> {
+    fn clone(&self) -> Self {
+        let mut copy = Self {
+            groups: Vec::new(),
+            boundary_totals: Vec::new(),
+            readings: Vec::new(),
+            control: self.control.clone(),
+            starts: None,
+            ..*self
         };
-        self.groups.iter().map(rows).sum()
+        copy.clone_from(self);
+        copy
     }
-}
 
-/// `to = from`, in the memory of `to`.
-fn copy<T: Lanes>(to: &mut Vec<Vec<T>>, from: &[Vec<T>]) {
-    to.resize_with(from.len(), Vec::new);
-    parallel::for_chunks(to, 1, 0, 1, &|first, to| {
-        for (to, from) in to.iter_mut().zip(&from[first..]) {
-            to.clone_from(from);
-        }
-    });
-}
-
-impl<T: Instance<D>, const D: usize> Simulation<T, D> {
-    /// A copy of the state, in the memory of `old` if there is one.
-    pub(crate) fn save(&self, old: Option<State<T, D>>) -> State<T, D> {
-        // By name, so that a new field asks whether it belongs to the state.
+    /// Copies `from` into the memory of this state, on all threads.
+    fn clone_from(&mut self, from: &Self) {
+        // Each field by name, so that a new one is not forgotten.
         let Self {
-            groups: now,
+            groups,
             drift,
-            uncorrected,
-            taken,
+            time_since_correction,
+            boundary_totals,
             readings,
             escaped,
             control,
             next_id,
+            gravity,
             pointer,
-            setup,
-            starts: _, // only grows: the ids say how far
-            grid: _,   // follows from the runs
-            walls: _,
-            colliders: _,
-            moving: _, // follow from the time
-            taken_by_run: _,
-            origin: _,
-            scheme: _,
-            isa: _,
-            sorter: _,
-            mark: _,
-            clock: _,
-            times: _,
+            starts,
         } = self;
-        let mut groups = old.map_or_else(Vec::new, |old| old.groups);
-        groups.resize_with(now.len(), || Rows {
-            bulk_modulus: None,
-            columns: Vec::new(),
-            mass: PerParticle::Uniform(T::default()),
-            volume0: PerParticle::Uniform(T::default()),
-            id: Vec::new(),
-            body: PerParticle::Uniform(0),
-            runs: Vec::new(),
-        });
-        for (rows, group) in groups.iter_mut().zip(now) {
-            rows.bulk_modulus = group.law.bulk_modulus();
-            copy(&mut rows.columns, &group.columns);
-            rows.mass.clone_from(&group.mass);
-            rows.volume0.clone_from(&group.volume0);
-            rows.id.clone_from(&group.id);
-            rows.body.clone_from(&group.body);
-            rows.runs.clone_from(&group.runs);
-        }
-        State {
-            groups,
-            drift: *drift,
-            uncorrected: *uncorrected,
-            taken: taken.clone(),
-            readings: readings.clone(),
-            escaped: *escaped,
-            control: control.clone(),
-            next_id: *next_id,
+        groups.clone_from(&from.groups);
+        *drift = from.drift;
+        *time_since_correction = from.time_since_correction;
+        boundary_totals.clone_from(&from.boundary_totals);
+        readings.clone_from(&from.readings);
+        *escaped = from.escaped;
+        control.clone_from(&from.control);
+        *next_id = from.next_id;
+        *gravity = from.gravity;
+        *pointer = from.pointer;
+        starts.clone_from(&from.starts);
+    }
+}
+
+impl<T: Lanes, const D: usize> State<T, D> {
+    /// The state at time 0, without particles; `laws` are those of the setup's materials.
+    pub(crate) fn new(scene: &CheckedSetup<D>, laws: Vec<Box<dyn Law<T, D>>>) -> Self {
+        let setup = &scene.setup;
+        let groups = laws.into_iter().zip(&setup.materials);
+        let starts = setup.forces.iter().any(|force| force.acts_on_particles());
+        Self {
+            groups: groups
+                .map(|(law, material)| Group::new(law.into(), material.density))
+                .collect(),
+            drift: 0.0,
+            time_since_correction: 0.0,
+            boundary_totals: vec![Taken::NOTHING; 2 * D + setup.colliders.len()],
+            readings: vec![Readings::default(); setup.probes.len()],
+            escaped: Escaped::default(),
+            control: StepControl::new(setup.time_step, setup.dx, Vector(setup.gravity).norm()),
+            next_id: 0,
             gravity: setup.gravity,
-            pointer: *pointer,
+            pointer: None,
+            starts: starts.then(Arc::default),
         }
     }
 
-    /// Goes back to `state`, which this simulation has had.
-    pub(crate) fn restore(&mut self, state: &State<T, D>) {
-        for (group, rows) in self.groups.iter_mut().zip(&state.groups) {
-            if let Some(bulk_modulus) = rows.bulk_modulus
-                && group.law.bulk_modulus() != rows.bulk_modulus
-            {
-                group.set_law(group.law.with_bulk_modulus(bulk_modulus));
+    /// Memory of the particles \[bytes\], spare capacity included.
+    pub(crate) fn bytes(&self) -> usize {
+        self.groups.iter().map(Group::bytes).sum()
+    }
+
+    pub(crate) fn particle_count(&self) -> usize {
+        self.groups.iter().map(Group::len).sum()
+    }
+
+    /// Carries out a command; it takes effect at the next substep.
+    pub(crate) fn command(&mut self, command: Command) {
+        match command {
+            Command::Gravity(gravity) => {
+                self.set_gravity(core::array::from_fn(|axis| gravity[axis]));
             }
-            let Group {
-                law: _,
-                density: _,
-                sound_speed: _,
-                columns,
-                mass,
-                volume0,
-                id,
-                body,
-                runs,
-            } = group;
-            copy(columns, &rows.columns);
-            mass.clone_from(&rows.mass);
-            volume0.clone_from(&rows.volume0);
-            id.clone_from(&rows.id);
-            body.clone_from(&rows.body);
-            runs.clone_from(&rows.runs);
+            Command::Pointer(pointer) => self.pointer = pointer,
+            Command::SoundSpeed { material, speed } => {
+                let density = self.groups.get(material).map(|group| group.density);
+                let bulk_modulus = density.map(|density| density * speed * speed);
+                self.stiffen(material, bulk_modulus.filter(|&k| k > 0.0 && k.is_finite()));
+            }
         }
-        self.drift = state.drift;
-        self.uncorrected = state.uncorrected;
-        self.taken.clone_from(&state.taken);
-        self.readings.clone_from(&state.readings);
-        self.escaped = state.escaped;
-        self.control = state.control.clone();
-        self.next_id = state.next_id;
-        self.setup.gravity = state.gravity;
-        self.pointer = state.pointer;
-        if let Some(starts) = &mut self.starts {
-            starts.truncate(state.next_id as usize); // ids are given in order
+    }
+
+    pub(crate) fn set_gravity(&mut self, gravity: [f64; D]) {
+        self.gravity = gravity;
+        self.control.gravity = Vector(gravity).norm();
+    }
+
+    /// Gives a material that has a bulk modulus this one \[Pa\]. Its particles keep their pressures.
+    pub(crate) fn stiffen(&mut self, material: usize, bulk_modulus: Option<f64>) {
+        let Some(group) = self.groups.get_mut(material) else {
+            return;
+        };
+        if let (Some(before), Some(now)) = (group.law.bulk_modulus(), bulk_modulus)
+            && before != now
+        {
+            group.set_law(group.law.with_bulk_modulus(now).into());
+            let (_, strain) = group.columns.split_at_mut(Layout::strain(D));
+            group.law.keep_pressure(before, strain);
+            self.measure_waves();
         }
-        self.grid.rebuild(&mut self.groups, &self.walls);
+    }
+
+    /// Lists what each wall and each collider has taken since the start.
+    pub(crate) fn boundary_impulses(&self, scene: &CheckedSetup<D>) -> Vec<BoundaryImpulse> {
+        let of = |name: &str, number: usize| BoundaryImpulse {
+            name: name.into(),
+            impulse: to_3d(self.boundary_totals[number].impulse.0),
+            angular_impulse: self.boundary_totals[number].angular,
+        };
+        let sides = scene.walls.sides().map(|(name, side)| of(name, side));
+        let colliders = scene.setup.colliders.iter().zip(2 * D..);
+        sides
+            .chain(colliders.map(|(collider, number)| of(&collider.name, number)))
+            .collect()
     }
 }

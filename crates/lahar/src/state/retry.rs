@@ -1,10 +1,7 @@
 //! Frames that fail are tried again from their start, with half the time step.
 
 use crate::error::Failure;
-use crate::instance::Instance;
-use crate::setup::Command;
-use crate::simulate::Simulate;
-use crate::simulation::Simulation;
+use crate::math::Lanes;
 use crate::state::State;
 use core::fmt;
 
@@ -44,89 +41,58 @@ impl Retry {
     }
 }
 
-/// The state at the start of a frame.
-pub(crate) struct Mark<T, const D: usize> {
-    pub(crate) state: State<T, D>,
+/// The start of a frame, to go back to.
+pub(crate) struct RetryPoint<T: Lanes, const D: usize> {
+    state: State<T, D>,
     /// How often the frame has been tried again.
     attempts: u32,
 }
 
-impl<T: Instance<D>, const D: usize> Simulation<T, D> {
-    pub(crate) fn begin(&mut self) {
-        let old = self.mark.take().map(|mark| mark.state);
-        self.mark = Some(Mark {
-            state: self.save(old),
-            attempts: 0,
-        });
-        self.control.frame_begins();
-    }
-
-    pub(crate) fn give_up_frame(&mut self) -> bool {
-        let Some(mark) = self.mark.take() else {
-            return false;
+impl<T: Lanes, const D: usize> RetryPoint<T, D> {
+    /// Copies `state` into the memory of `old`, if there is one.
+    pub(crate) fn save(state: &State<T, D>, old: Option<Self>) -> Self {
+        let state = match old {
+            None => state.clone(),
+            Some(mut old) => {
+                old.state.clone_from(state);
+                old.state
+            }
         };
-        self.restore(&mark.state);
-        self.mark = Some(mark);
-        true
+        Self { state, attempts: 0 }
     }
 
-    pub(crate) fn begin_again(&mut self, failure: &Failure) -> Option<Retry> {
-        let mut mark = self.mark.take()?;
-        // What was ordered meanwhile stands.
-        let (gravity, pointer) = (self.gravity(), self.pointer);
-        let stiffness: Vec<Option<f64>> =
-            (self.groups.iter().map(|group| group.law.bulk_modulus())).collect();
-        self.restore(&mark.state);
-        self.command(Command::Gravity(gravity));
-        self.command(Command::Pointer(pointer));
+    /// Memory of the copy \[bytes\].
+    pub(crate) fn bytes(&self) -> usize {
+        self.state.bytes()
+    }
+
+    /// Sets `state` back to the start of the frame, as if it had not begun.
+    pub(crate) fn restore(&self, state: &mut State<T, D>) {
+        state.clone_from(&self.state);
+    }
+
+    /// Sets `state` back to the start of the frame, with half the time step of the last attempt. Commands given
+    /// during the failed frame stay in force. Returns `None` if that has been tried often enough.
+    pub(crate) fn retry(&mut self, state: &mut State<T, D>, failure: &Failure) -> Option<Retry> {
+        let (gravity, pointer) = (state.gravity, state.pointer);
+        let stiffness: Vec<Option<f64>> = (state.groups.iter())
+            .map(|group| group.law.bulk_modulus())
+            .collect();
+        self.restore(state);
+        state.set_gravity(gravity);
+        state.pointer = pointer;
         for (material, bulk_modulus) in stiffness.into_iter().enumerate() {
-            self.stiffen(material, bulk_modulus);
+            state.stiffen(material, bulk_modulus);
         }
-        mark.attempts += 1;
-        let attempts = mark.attempts;
-        self.mark = Some(mark);
-        if attempts > MOST_HALVINGS {
+        self.attempts += 1;
+        if self.attempts > MOST_HALVINGS {
             return None;
         }
-        self.control.frame_begins();
+        state.control.begin_frame();
         Some(Retry {
-            time: self.control.time(),
-            part: self.control.shorten(attempts),
+            time: state.control.time(),
+            part: state.control.shorten(self.attempts),
             failure: failure.clone(),
         })
-    }
-}
-
-/// One frame by `advance`, tried again with half the time step whenever a substep fails; `told` is
-/// called before each time. Whatever `advance` returns is that of the attempt that went well.
-///
-/// ```
-/// # use lahar::{Isa, Material, Model, ParticleBatch, Setup, Simulate, Simulation, material::Dust};
-/// # let dust = Material { name: "dust".into(), density: 1.0, model: Model::Dust(Dust) };
-/// # let mut simulation = Simulation::<f32, 2>::new(Setup::new(0.1, vec![dust]), &[])?;
-/// for frame in 1..=10 {
-///     let end = f64::from(frame) / 60.0;
-///     lahar::frame(&mut simulation, |s| s.advance_to(end), |retry| eprintln!("{retry}"))?;
-/// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
-/// # Errors
-/// What failed last, when the shortest step has not helped either; the simulation is at the frame's
-/// start then.
-pub fn frame<S: Simulate + ?Sized, R>(
-    simulation: &mut S,
-    mut advance: impl FnMut(&mut S) -> Result<R, Failure>,
-    mut told: impl FnMut(&Retry),
-) -> Result<R, Failure> {
-    simulation.begin_frame();
-    loop {
-        match advance(simulation) {
-            Ok(done) => return Ok(done),
-            Err(failure) => match simulation.retry_frame(&failure) {
-                Some(retry) => told(&retry),
-                None => return Err(failure),
-            },
-        }
     }
 }

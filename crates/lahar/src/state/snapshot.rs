@@ -1,11 +1,12 @@
 //! Copies of particles for everything outside: rows by ascending id, whatever the order of storage.
 
+use super::State;
 use crate::instance::Instance;
 use crate::material;
 use crate::parallel;
 use crate::particles::{Data, Field, Snapshot};
 use crate::particles::{Group, Layout, MOST_COLUMNS};
-use crate::simulation::Simulation;
+use crate::setup::check::CheckedSetup;
 
 /// Where a particle lies.
 #[derive(Clone, Copy)]
@@ -24,27 +25,28 @@ const NOWHERE: Place = Place {
 const SMALLEST_PIECE: usize = 1 << 13;
 
 pub(crate) fn snapshot<T: Instance<D>, const D: usize>(
-    simulation: &Simulation<T, D>,
+    scene: &CheckedSetup<D>,
+    state: &State<T, D>,
     fields: &[Field],
 ) -> Snapshot {
-    let places = places(simulation);
+    let places = places(state);
     let blocks = match fields.contains(&Field::Position) {
-        true => simulation.groups.iter().map(blocks).collect(),
+        true => state.groups.iter().map(blocks).collect(),
         false => Vec::new(),
     };
-    let mut described = described(simulation, fields, &places).into_iter();
+    let mut described = described(state, fields, &places).into_iter();
     let columns = fields
         .iter()
         .map(|&field| {
             let data = match is_described(field) {
                 true => T::data(described.next().expect("one for each of these fields")),
-                false => column(simulation, field, &places, &blocks),
+                false => column(scene, state, field, &places, &blocks),
             };
             (field, data)
         })
         .collect();
     Snapshot {
-        time: simulation.control.time(),
+        time: state.control.time(),
         dimension: D,
         count: places.len(),
         columns,
@@ -52,10 +54,10 @@ pub(crate) fn snapshot<T: Instance<D>, const D: usize>(
 }
 
 /// Places by ascending id. Ids are given in order, so each has its slot and nothing need be sorted.
-fn places<T: Instance<D>, const D: usize>(simulation: &Simulation<T, D>) -> Vec<Place> {
-    let mut slots = vec![NOWHERE; simulation.next_id as usize];
+fn places<T: Instance<D>, const D: usize>(state: &State<T, D>) -> Vec<Place> {
+    let mut slots = vec![NOWHERE; state.next_id as usize];
     let mut count = 0;
-    for (index, group) in simulation.groups.iter().enumerate() {
+    for (index, group) in state.groups.iter().enumerate() {
         count += group.id.len();
         for (row, &id) in group.id.iter().enumerate() {
             slots[id as usize] = Place {
@@ -81,13 +83,14 @@ fn blocks<T: Instance<D>, const D: usize>(group: &Group<T, D>) -> Vec<[i32; D]> 
 
 /// A field that is stored as it is.
 fn column<T: Instance<D>, const D: usize>(
-    simulation: &Simulation<T, D>,
+    scene: &CheckedSetup<D>,
+    state: &State<T, D>,
     field: Field,
     places: &[Place],
     blocks: &[Vec<[i32; D]>],
 ) -> Data {
     let width = field.info().shape.len(D);
-    let group = |place: &Place| &simulation.groups[place.group as usize];
+    let group = |place: &Place| &state.groups[place.group as usize];
     match field {
         Field::Id => Data::U32(fill(places, width, |place, out| {
             out[0] = group(place).id[place.row as usize];
@@ -99,7 +102,7 @@ fn column<T: Instance<D>, const D: usize>(
         Field::Position => Data::F64(fill(places, width, |place, out| {
             let row = place.row as usize;
             let block = blocks[place.group as usize][row];
-            out.copy_from_slice(&simulation.position(group(place), block, row));
+            out.copy_from_slice(&group(place).position(&scene.lattice, block, row));
         })),
         Field::Velocity => T::data(fill(places, width, |place, out: &mut [T]| {
             let (columns, row) = (&group(place).columns, place.row as usize);
@@ -138,7 +141,7 @@ fn is_described(field: Field) -> bool {
 
 /// The described ones of `fields`, in that order; the law is asked once a particle.
 fn described<T: Instance<D>, const D: usize>(
-    simulation: &Simulation<T, D>,
+    state: &State<T, D>,
     fields: &[Field],
     places: &[Place],
 ) -> Vec<Vec<T>> {
@@ -158,13 +161,13 @@ fn described<T: Instance<D>, const D: usize>(
         .map(|(field, values)| (*field, values.as_mut_slice()))
         .collect();
     let grain = parallel::grain(places.len(), SMALLEST_PIECE);
-    describe_pieces(simulation, places, columns, grain);
+    describe_pieces(state, places, columns, grain);
     values
 }
 
 /// Halves the work until pieces are small enough, and does it.
 fn describe_pieces<T: Instance<D>, const D: usize>(
-    simulation: &Simulation<T, D>,
+    state: &State<T, D>,
     places: &[Place],
     mut columns: Vec<(Field, &mut [T])>,
     grain: usize,
@@ -179,13 +182,13 @@ fn describe_pieces<T: Instance<D>, const D: usize>(
             })
             .unzip();
         parallel::join(
-            || describe_pieces(simulation, low, low_columns, grain),
-            || describe_pieces(simulation, high, high_columns, grain),
+            || describe_pieces(state, low, low_columns, grain),
+            || describe_pieces(state, high, high_columns, grain),
         );
         return;
     }
     for (index, place) in places.iter().enumerate() {
-        let (group, row) = (&simulation.groups[place.group as usize], place.row as usize);
+        let (group, row) = (&state.groups[place.group as usize], place.row as usize);
         let at = |column: usize| group.columns[column][row].to_f64();
         let mut strain = [0.0; MOST_COLUMNS];
         let strain = &mut strain[..group.law.strain_columns()];
@@ -194,15 +197,15 @@ fn describe_pieces<T: Instance<D>, const D: usize>(
         }
         let gradient =
             core::array::from_fn(|i| core::array::from_fn(|j| at(Layout::affine(D) + j * D + i)));
-        let state = group.law.describe(strain, gradient);
+        let found = group.law.describe(strain, gradient);
         for (field, values) in &mut columns {
             let width = field.info().shape.len(D);
             let out = &mut values[index * width..][..width];
             match *field {
-                Field::Jacobian => out[0] = T::from_f64(state.jacobian),
-                Field::Pressure => out[0] = T::from_f64(state.pressure),
+                Field::Jacobian => out[0] = T::from_f64(found.jacobian),
+                Field::Pressure => out[0] = T::from_f64(found.pressure),
                 Field::DeformationGradient => (0..D * D).for_each(|k| {
-                    out[k] = T::from_f64(state.deformation_gradient[k / D][k % D]);
+                    out[k] = T::from_f64(found.deformation_gradient[k / D][k % D]);
                 }),
                 Field::Variable(variable) => {
                     let shown = material::values(variable, group.law.variables(), strain, D);

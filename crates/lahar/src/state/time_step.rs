@@ -23,7 +23,7 @@ const MOST_SUBSTEPS: u64 = 1 << f64::MANTISSA_DIGITS;
 const EVEN_OUT: f64 = 2.0;
 
 /// Chooses each substep from the state that the last one left.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct StepControl {
     step: TimeStep,
     dx: f64,
@@ -54,7 +54,8 @@ pub(crate) struct StepControl {
 }
 
 impl StepControl {
-    pub(crate) fn new(step: TimeStep, dx: f64) -> Self {
+    /// A control at time 0, with gravity of size `gravity` \[m/s²\].
+    pub(crate) fn new(step: TimeStep, dx: f64, gravity: f64) -> Self {
         Self {
             step,
             dx,
@@ -62,7 +63,7 @@ impl StepControl {
             boundary_speed: 0.0,
             wave_speed: 0.0,
             viscosity: 0.0,
-            gravity: 0.0,
+            gravity,
             field: 0.0,
             substeps: 0,
             time: 0.0,
@@ -198,7 +199,8 @@ impl StepControl {
 
     /// A frame is done and the next begins: a shortened step slowly recovers, the more slowly the more
     /// often that went wrong.
-    pub(crate) fn frame_begins(&mut self) {
+    pub(crate) fn begin_frame(&mut self) {
+        self.shortest = (f64::INFINITY, DtLimit::Frame);
         if self.part < 1.0 {
             self.clean_frames += 1;
             let failures = self.failed_frames.clamp(1, MOST_PATIENCE) - 1;
@@ -274,7 +276,7 @@ impl StepControl {
     }
 
     /// A substep has been taken.
-    pub(crate) fn taken(&mut self, dt: f64, limit: DtLimit) {
+    pub(crate) fn advance(&mut self, dt: f64, limit: DtLimit) {
         self.substeps += 1;
         self.time += dt;
         if dt < self.shortest.0 {
@@ -289,9 +291,9 @@ impl StepControl {
         }
     }
 
-    /// The shortest substep since this was last asked; (0, frame) if there was none.
-    pub(crate) fn shortest_since_asked(&mut self) -> (f64, DtLimit) {
-        let (dt, limit) = core::mem::replace(&mut self.shortest, (f64::INFINITY, DtLimit::Frame));
+    /// The shortest substep since the frame began; (0, frame) if there was none.
+    pub(crate) fn shortest(&self) -> (f64, DtLimit) {
+        let (dt, limit) = self.shortest;
         if dt.is_finite() {
             (dt, limit)
         } else {

@@ -1,7 +1,7 @@
 //! Grid to particles: (5)–(8).
 
 use super::scatter::stencil;
-use super::{Scheme, Stage, TileCopy, rows, with_scheme};
+use super::{Stage, TileCopy, rows, with_scheme};
 use crate::boundary::collider::Moving;
 use crate::boundary::impulse::Taken;
 use crate::boundary::pointer::Push;
@@ -16,6 +16,7 @@ use crate::particles::in_range;
 use crate::particles::{AHEAD, CHUNK, Largest, Padded, close_chunk, open_chunk};
 use crate::particles::{ColumnsMut, Group, Layout, PerParticle, Run, block_edge, split_runs};
 use crate::prefetch::prefetch_chunk;
+use crate::setup::Scheme;
 use crate::setup::Transfer;
 use fearless_simd::Simd;
 
@@ -479,9 +480,9 @@ fn chunk<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const
                 }
             }
         }
-        most.moved.take(simd, Real::select(good, largest, zero));
+        most.moved.include(simd, Real::select(good, largest, zero));
         most.speed_squared
-            .take(simd, Real::select(good, new_v.dot(new_v), zero));
+            .include(simd, Real::select(good, new_v.dot(new_v), zero));
 
         for i in 0..D {
             let new_u = Real::select(good, new_u[i], u[i]);

@@ -18,62 +18,13 @@ pub(crate) mod scatter;
 pub(crate) mod volume;
 
 use crate::grid::{Grid, tile_edge, tile_plane};
-use crate::kernel::BSpline;
 use crate::math::Lanes;
 use crate::particles::Run;
 use crate::particles::{CHUNK, Rows};
-use crate::setup::{ForceForm, Kernel, Transfer};
 use fearless_simd::Simd;
 
 /// Numbers of the largest tile: cubic in 3D, two planes.
 const LARGEST_TILE: usize = 2 * tile_plane::<3>(tile_edge::<3>(4));
-
-/// What the loops need to know of scheme, kernel and step; all lengths in cells.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Scheme {
-    pub(crate) kernel: Kernel,
-    pub(crate) force: ForceForm,
-    pub(crate) transfer: Transfer,
-    pub(crate) dx: f64,
-}
-
-impl Scheme {
-    /// Nodes the kernel touches on an axis.
-    pub(crate) fn kernel_nodes(self) -> usize {
-        match self.kernel {
-            Kernel::Linear => crate::kernel::Linear::NODES,
-            Kernel::Quadratic => crate::kernel::Quadratic::NODES,
-            Kernel::Cubic => crate::kernel::Cubic::NODES,
-        }
-    }
-
-    /// The kernel's [`BSpline::OFFSET`].
-    pub(crate) fn offset(self) -> f64 {
-        match self.kernel {
-            Kernel::Linear => crate::kernel::Linear::OFFSET,
-            Kernel::Quadratic => crate::kernel::Quadratic::OFFSET,
-            Kernel::Cubic => crate::kernel::Cubic::OFFSET,
-        }
-    }
-
-    /// The kernel's [`BSpline::INVERSE_INERTIA`].
-    pub(crate) fn inverse_inertia(self) -> f64 {
-        match self.kernel {
-            Kernel::Linear => crate::kernel::Linear::INVERSE_INERTIA,
-            Kernel::Quadratic => crate::kernel::Quadratic::INVERSE_INERTIA,
-            Kernel::Cubic => crate::kernel::Cubic::INVERSE_INERTIA,
-        }
-    }
-
-    /// Planes of quads a node needs: two where velocity before forces is asked for.
-    pub(crate) fn planes(self) -> usize {
-        if matches!(self.transfer, Transfer::Flip { .. }) {
-            2
-        } else {
-            1
-        }
-    }
-}
 
 /// A copy of a tile's nodes, as far as they are read; it begins with a line of the cache.
 #[repr(align(64))]

@@ -1,6 +1,6 @@
 //! Particles to grid: (1)–(4).
 
-use super::{Scheme, Stage, rows, with_scheme};
+use super::{Stage, rows, with_scheme};
 use crate::grid::{Reach, Tiles, tile_edge};
 use crate::kernel::BSpline;
 use crate::material::{IsaToken, load_matrix, load_vector};
@@ -9,6 +9,7 @@ use crate::parallel;
 use crate::particles::{AHEAD, CHUNK, Chunk, Padded, Rows};
 use crate::particles::{Group, Layout, Run, block_edge, slices, split_runs};
 use crate::prefetch::prefetch_chunk;
+use crate::setup::Scheme;
 use crate::setup::{ForceForm, Transfer};
 use fearless_simd::Simd;
 

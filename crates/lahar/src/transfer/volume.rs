@@ -5,7 +5,7 @@
 
 use super::rows::gather_quad;
 use super::scatter::stencil;
-use super::{Scheme, Stage, TileCopy};
+use super::{Stage, TileCopy};
 use crate::dispatch::{on_level, on_portable};
 use crate::grid::{Grid, tile_edge};
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
@@ -17,6 +17,7 @@ use crate::particles::{AHEAD, CHUNK, Chunk, Padded, Rows, pad};
 use crate::particles::{Group, Layout, Run, slices, split_runs};
 use crate::prefetch::prefetch_chunk;
 use crate::setup::Kernel;
+use crate::setup::Scheme;
 use fearless_simd::Simd;
 
 /// Writes J − 1 of every row of `group` to `out`, by what the grid's nodes hold of rest volume (first

@@ -2,6 +2,7 @@
 //!
 //! The test of allocations is a binary of its own: its global allocator would count the allocations of other tests.
 
+mod adding;
 mod against_reference;
 mod checkpoint;
 mod colliders;

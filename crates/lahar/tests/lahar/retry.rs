@@ -174,7 +174,6 @@ where
         assert_eq!(faulty.frame(number, 0).1, []);
     }
     let before = bits(&faulty.simulation.snapshot(ALL));
-    faulty.simulation.diagnostics(); // its shortest substep is that since the last call
     let totals = faulty.simulation.diagnostics();
     let (done, retries) = faulty.frame(6, usize::MAX);
     let failure = done.unwrap_err();
@@ -243,7 +242,7 @@ fn a_particle_out_of_range_is_a_failure() {
     let near = 0.1 * (8.0 * f64::from(1 << 27) - 1000.0);
     for failure in [thrown::<f32>(near, 9e3), thrown::<f64>(near, 9e3)] {
         let failure = failure.unwrap_err();
-        assert!(failure.what.contains("too far"), "{failure}");
+        assert!(failure.problem.contains("too far"), "{failure}");
     }
     for fine in [thrown::<f32>(0.0, 9e3), thrown::<f64>(0.0, 9e3)] {
         assert_eq!(fine, Ok(()));
@@ -298,7 +297,7 @@ fn a_retry_needs_the_start_of_a_frame_whose_copy_counts_as_memory() {
     let particles = simulation.particle_count();
     assert_eq!(simulation.memory().retry_bytes, 0);
     let failure = Failure {
-        what: String::new(),
+        problem: String::new(),
         particle: 0,
         material: String::new(),
         body: 0,

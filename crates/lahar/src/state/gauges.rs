@@ -1,11 +1,15 @@
 //! What gauges read. In f64 and in the order of rows, so that bits do not depend on threads; only
 //! blocks that a gauge can see are looked at.
 
+use super::sensor;
 use crate::instance::Instance;
 use crate::kernel::{BSpline, Quadratic};
-use crate::particles::{Group, Layout, Run, block_edge};
+use crate::math::Lanes;
+use crate::particles::{Group, Lattice, Layout, Run, block_edge};
+use crate::setup::check::CheckedSetup;
 use crate::setup::{Gauge, Plate};
-use crate::simulation::Simulation;
+use crate::state::State;
+use crate::state::workspace::Workspace;
 
 /// Cells that a particle may be out of its block between sorts.
 const DRIFT: f64 = 1.0;
@@ -23,35 +27,36 @@ const SURFACE: f64 = 0.5;
 
 /// Reads probe `index`.
 pub(super) fn measure<T: Instance<D>, const D: usize>(
-    simulation: &mut Simulation<T, D>,
+    scene: &CheckedSetup<D>,
+    state: &mut State<T, D>,
+    workspace: &mut Workspace<T, D>,
     index: usize,
 ) -> Vec<f64> {
-    let gauge = simulation.setup.probes[index].gauge.clone();
-    vec![match gauge {
-        Gauge::Pressure { at, radius, plate } => {
-            if let Some(felt) = simulation.felt(index) {
+    vec![match &scene.setup.probes[index].gauge {
+        &Gauge::Pressure { at, radius, plate } => {
+            if let Some(felt) = sensor::felt(scene, state, index) {
                 return vec![felt];
             }
             let points = points(at, plate.as_ref(), radius);
             let sum: f64 = points
                 .iter()
-                .map(|&x| pressure(simulation, x, radius))
+                .map(|&x| pressure(scene, state, x, radius))
                 .sum();
             sum / points.len() as f64
         }
-        Gauge::Velocity { at, radius } => return velocity(simulation, at, radius).into(),
-        Gauge::Height {
+        &Gauge::Velocity { at, radius } => return velocity(scene, state, at, radius).into(),
+        &Gauge::Height {
             up,
             column: Some(at),
-        } => column_height(simulation, up, at),
-        Gauge::Height { up, column: None } => mean_height(simulation, up),
-        Gauge::Front {
+        } => column_height(scene, state, up, at),
+        &Gauge::Height { up, column: None } => mean_height(scene, state, workspace, up),
+        &Gauge::Front {
             along,
             rising,
             up,
             depth,
-        } => front(simulation, [along, up], rising, depth),
-        Gauge::Force { on } => return simulation.mean_force(index, &on),
+        } => front(scene, state, [along, up], rising, depth),
+        Gauge::Force { on } => return state.mean_force(scene, index, on),
     }]
 }
 
@@ -107,52 +112,37 @@ fn tangents<const D: usize>(normal: [f64; D]) -> [[f64; D]; 2] {
     [first, second]
 }
 
-impl<T: Instance<D>, const D: usize> Simulation<T, D> {
-    /// `x` \[m\] in cells from the origin.
-    pub(super) fn to_cells(&self, x: [f64; D]) -> [f64; D] {
-        core::array::from_fn(|k| (x[k] - self.origin[k]) / self.setup.dx)
-    }
-
-    /// From `a` to `b` on an axis, in cells; the short way round where it is periodic.
-    pub(super) fn offset_on(&self, axis: usize, a: f64, b: f64) -> f64 {
-        match self.walls.period[axis] {
-            Some(period) => (b - a) - period as f64 * ((b - a) / period as f64).round(),
-            None => b - a,
-        }
-    }
-
-    /// Calls `f` with every particle of blocks that may reach within `reach` cells of `x` on the
-    /// axes in `seen`: its group, row, and place in cells.
-    fn near(
-        &self,
-        x: [f64; D],
-        reach: f64,
-        seen: impl Fn(usize) -> bool,
-        mut f: impl FnMut(&Group<T, D>, usize, [f64; D]),
-    ) {
-        let edge = block_edge(D) as f64;
-        let offset = self.scheme.offset();
-        for group in &self.groups {
-            let may_see = |run: &&Run<D>| {
-                (0..D).filter(|&k| seen(k)).all(|k| {
-                    let middle = offset + edge * (f64::from(run.block[k]) + 0.5);
-                    self.offset_on(k, x[k], middle).abs() <= reach + DRIFT + 0.5 * edge
-                })
-            };
-            for run in group.runs.iter().filter(may_see) {
-                for row in run.rows() {
-                    f(group, row, group.cells(run.block, row, offset));
-                }
+/// Calls `f` with every particle of blocks that may reach within `reach` cells of `x` on the axes in
+/// `seen`: its group, row, and position in cells.
+fn for_near<T: Lanes, const D: usize>(
+    lattice: &Lattice<D>,
+    state: &State<T, D>,
+    (x, reach): ([f64; D], f64),
+    seen: impl Fn(usize) -> bool,
+    mut f: impl FnMut(&Group<T, D>, usize, [f64; D]),
+) {
+    let half = 0.5 * block_edge(D) as f64;
+    for group in &state.groups {
+        let may_see = |run: &&Run<D>| {
+            let middle = lattice.middle(run.block);
+            (0..D).filter(|&k| seen(k)).all(|k| {
+                let distance = lattice.offset_on(k, x[k], middle[k]).abs();
+                distance <= reach + DRIFT + half
+            })
+        };
+        for run in group.runs.iter().filter(may_see) {
+            for row in run.rows() {
+                f(group, row, group.cells(lattice, run.block, row));
             }
         }
     }
+}
 
-    /// Weight of the particle at `b` for a node at `a`, its mirror images in the axis' walls included.
-    fn mirrored_weight(&self, axis: usize, a: f64, b: f64) -> f64 {
-        let planes = self.walls.planes.iter().filter(|plane| plane.axis == axis);
-        let images = planes.map(|plane| weight(2.0 * plane.node as f64 - b - a));
-        weight(self.offset_on(axis, a, b)) + images.sum::<f64>()
-    }
+/// Weight of the particle at `b` for a node at `a`, its mirror images in the walls across `axis` included.
+fn mirrored_weight<const D: usize>(scene: &CheckedSetup<D>, axis: usize, a: f64, b: f64) -> f64 {
+    let planes = scene.walls.planes.iter().filter(|plane| plane.axis == axis);
+    let images = planes.map(|plane| weight(2.0 * plane.node as f64 - b - a));
+    weight(scene.lattice.offset_on(axis, a, b)) + images.sum::<f64>()
 }
 
 /// The quadratic kernel, whatever the run's is: the weight of a node for a particle `s` cells away.
@@ -169,12 +159,13 @@ fn weight(s: f64) -> f64 {
 }
 
 /// The pressure at a point \[Pa\].
-fn pressure<T: Instance<D>, const D: usize>(
-    simulation: &Simulation<T, D>,
+fn pressure<T: Lanes, const D: usize>(
+    scene: &CheckedSetup<D>,
+    state: &State<T, D>,
     at: [f64; D],
     radius: f64,
 ) -> f64 {
-    let fit = fitted(simulation, at, radius, |_, _, pressure| [pressure]);
+    let fit = fitted(scene, state, at, radius, |_, _, pressure| [pressure]);
     fit.map_or(0.0, |[fit]| {
         // What is pressed everywhere does not pull in between.
         let least = if fit.low < 0.0 {
@@ -187,15 +178,16 @@ fn pressure<T: Instance<D>, const D: usize>(
 }
 
 /// The velocity at a point \[m/s\].
-fn velocity<T: Instance<D>, const D: usize>(
-    simulation: &Simulation<T, D>,
+fn velocity<T: Lanes, const D: usize>(
+    scene: &CheckedSetup<D>,
+    state: &State<T, D>,
     at: [f64; D],
     radius: f64,
 ) -> [f64; D] {
     let velocity = |group: &Group<T, D>, row: usize, _| {
         core::array::from_fn(|axis| group.columns[Layout::velocity(D) + axis][row].to_f64())
     };
-    let fit = fitted(simulation, at, radius, velocity);
+    let fit = fitted(scene, state, at, radius, velocity);
     fit.map_or([0.0; D], |axes| axes.map(Fitted::held))
 }
 
@@ -219,25 +211,27 @@ impl Fitted {
 /// (16): `quantities` of particles at a point, from planes fitted to those around it; `None` if there are
 /// none. A mean alone would be what is where the particles are: on a wall, half a radius inside. Quantities
 /// are asked of a group, a row and its Cauchy pressure \[Pa\].
-fn fitted<T: Instance<D>, const D: usize, const N: usize>(
-    simulation: &Simulation<T, D>,
+fn fitted<T: Lanes, const D: usize, const N: usize>(
+    scene: &CheckedSetup<D>,
+    state: &State<T, D>,
     at: [f64; D],
     radius: f64,
     quantities: impl Fn(&Group<T, D>, usize, f64) -> [f64; N],
 ) -> Option<[Fitted; N]> {
-    let x = simulation.to_cells(at);
-    let reach = radius / simulation.setup.dx;
+    let x = scene.lattice.to_cells(at);
+    let reach = radius / scene.lattice.dx;
     // Normal equations of q(d) = c₀ + c·d: the matrix and, for each quantity, the right side.
     let mut sums = [[0.0; 4]; 4];
     let mut right = [[0.0; 4]; N];
     let mut range = [(f64::INFINITY, f64::NEG_INFINITY); N];
-    simulation.near(
-        x,
-        reach,
+    for_near(
+        &scene.lattice,
+        state,
+        (x, reach),
         |_| true,
         |group, row, place| {
             let d: [f64; D] =
-                core::array::from_fn(|k| simulation.offset_on(k, x[k], place[k]) / reach);
+                core::array::from_fn(|k| scene.lattice.offset_on(k, x[k], place[k]) / reach);
             let squared = d.iter().map(|d| d * d).sum::<f64>();
             if squared >= 1.0 {
                 return;
@@ -274,20 +268,17 @@ fn fitted<T: Instance<D>, const D: usize, const N: usize>(
 }
 
 /// J V⁰ \[m³\] and Cauchy pressure \[Pa\] of a particle.
-fn volume_and_pressure<T: Instance<D>, const D: usize>(
-    group: &Group<T, D>,
-    row: usize,
-) -> (f64, f64) {
+fn volume_and_pressure<T: Lanes, const D: usize>(group: &Group<T, D>, row: usize) -> (f64, f64) {
     let at = |column: usize| group.columns[column][row].to_f64();
     let strain: Vec<f64> = (0..group.law.strain_columns())
         .map(|column| at(Layout::strain(D) + column))
         .collect();
     let gradient =
         core::array::from_fn(|i| core::array::from_fn(|j| at(Layout::affine(D) + j * D + i)));
-    let state = group.law.describe(&strain, gradient);
+    let found = group.law.describe(&strain, gradient);
     (
-        group.volume0.get(row).to_f64() * state.jacobian,
-        state.pressure,
+        group.volume0.get(row).to_f64() * found.jacobian,
+        found.pressure,
     )
 }
 
@@ -307,22 +298,24 @@ fn first_unknown<const D: usize>(mut a: [[f64; 4]; 4], mut b: [f64; 4]) -> f64 {
 
 /// The surface in a column: the highest place where half of the space is filled, as the quadratic
 /// kernel sees it.
-fn column_height<T: Instance<D>, const D: usize>(
-    simulation: &Simulation<T, D>,
+fn column_height<T: Lanes, const D: usize>(
+    scene: &CheckedSetup<D>,
+    state: &State<T, D>,
     up: usize,
     at: [f64; D],
 ) -> f64 {
-    let x = simulation.to_cells(at);
-    let cell = simulation.setup.dx.powi(D as i32);
+    let x = scene.lattice.to_cells(at);
+    let cell = scene.lattice.dx.powi(D as i32);
     let mut column: Vec<(f64, f64)> = Vec::new();
-    simulation.near(
-        x,
-        1.5,
+    for_near(
+        &scene.lattice,
+        state,
+        (x, 1.5),
         |axis| axis != up,
         |group, row, place| {
             let across = (0..D).filter(|&k| k != up);
             let w: f64 = across
-                .map(|k| simulation.mirrored_weight(k, x[k], place[k]))
+                .map(|k| mirrored_weight(scene, k, x[k], place[k]))
                 .product();
             if w > 0.0 {
                 column.push((place[up], w * group.volume0.get(row).to_f64() / cell));
@@ -331,12 +324,12 @@ fn column_height<T: Instance<D>, const D: usize>(
     );
     let lowest = column.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
     let highest = column.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max);
-    let ground = if simulation.setup.domain.is_some() {
+    let ground = if scene.setup.domain.is_some() {
         0.0
     } else {
         lowest
     };
-    let world = |cells: f64| simulation.origin[up] + simulation.setup.dx * cells;
+    let world = |cells: f64| scene.lattice.to_world(up, cells);
     if column.is_empty() {
         return world(ground.min(0.0));
     }
@@ -346,7 +339,7 @@ fn column_height<T: Instance<D>, const D: usize>(
     for &(place, part) in &column {
         let base = ((place - first).floor() as usize).saturating_sub(1);
         for (node, filled) in filled.iter_mut().enumerate().skip(base).take(4) {
-            *filled += part * simulation.mirrored_weight(up, first + node as f64, place);
+            *filled += part * mirrored_weight(scene, up, first + node as f64, place);
         }
     }
     // A wall cuts the column off: what is beyond its plane is only an image.
@@ -365,54 +358,54 @@ fn column_height<T: Instance<D>, const D: usize>(
 
 /// The filled volume over the domain's area \[m\], from its lower side.
 fn mean_height<T: Instance<D>, const D: usize>(
-    simulation: &mut Simulation<T, D>,
+    scene: &CheckedSetup<D>,
+    state: &mut State<T, D>,
+    workspace: &mut Workspace<T, D>,
     up: usize,
 ) -> f64 {
-    simulation.sort_if_drifted();
-    let volume = crate::state::diagnostics::filled_volume(simulation);
-    simulation.origin[up] + volume / across(simulation, |axis| axis != up)
+    workspace.sort_if_drifted(scene, state);
+    let volume = workspace.filled_volume(state);
+    scene.lattice.origin[up] + volume / across(scene, |axis| axis != up)
 }
 
 /// Product of the domain's sides on the axes in `seen` \[m^n\]; 1 for none.
-fn across<T: Instance<D>, const D: usize>(
-    simulation: &Simulation<T, D>,
-    seen: impl Fn(usize) -> bool,
-) -> f64 {
+fn across<const D: usize>(scene: &CheckedSetup<D>, seen: impl Fn(usize) -> bool) -> f64 {
     let side = |axis: usize| {
-        let domain = simulation.setup.domain.as_ref();
+        let domain = scene.setup.domain.as_ref();
         domain.map_or(1.0, |domain| domain.max[axis] - domain.min[axis])
     };
     (0..D).filter(|&axis| seen(axis)).map(side).product()
 }
 
 /// The end of the last column of one cell that is deeper than `depth` \[m\].
-fn front<T: Instance<D>, const D: usize>(
-    simulation: &Simulation<T, D>,
+fn front<T: Lanes, const D: usize>(
+    scene: &CheckedSetup<D>,
+    state: &State<T, D>,
     [along, up]: [usize; 2],
     rising: bool,
     depth: f64,
 ) -> f64 {
-    let dx = simulation.setup.dx;
+    let dx = scene.lattice.dx;
     let mut columns = std::collections::BTreeMap::<i64, f64>::new();
-    for group in &simulation.groups {
+    for group in &state.groups {
         for run in &group.runs {
             for row in run.rows() {
-                let x = simulation.position(group, run.block, row)[along];
-                let cell = ((x - simulation.origin[along]) / dx).floor() as i64;
+                let x = group.position(&scene.lattice, run.block, row)[along];
+                let cell = ((x - scene.lattice.origin[along]) / dx).floor() as i64;
                 *columns.entry(cell).or_default() += group.volume0.get(row).to_f64();
             }
         }
     }
-    let area = dx * across(simulation, |axis| axis != along && axis != up);
+    let area = dx * across(scene, |axis| axis != along && axis != up);
     let deep = |(cell, volume): (&i64, &f64)| (volume / area > depth).then_some(*cell);
     let last = if rising {
         columns.iter().rev().find_map(deep)
     } else {
         columns.iter().find_map(deep)
     };
-    let world = |cells: f64| simulation.origin[along] + dx * cells;
+    let world = |cells: f64| scene.lattice.to_world(along, cells);
     let Some(last) = last else {
-        let domain = simulation.setup.domain.as_ref();
+        let domain = scene.setup.domain.as_ref();
         return match (rising, domain) {
             (false, Some(domain)) => domain.max[along],
             _ => world(0.0),
