@@ -1,12 +1,11 @@
-//! The state of a simulation as named arrays, for files to keep.
+//! Checkpoints: the state of a simulation as named arrays.
 //!
 //! ```text
-//! Simulation ──checkpoint──▶ Checkpoint ──resume──▶ Simulation of the same setup
-//!            State (state.rs)            State, checked
+//! State ──to_checkpoint──▶ Checkpoint ──from_checkpoint, which checks──▶ State
 //! ```
-//! Rows keep their order and their blocks, so that what follows has the same bits as if nothing had been
-//! kept. Reading believes nothing: an array that is missing, of another length, not finite or out of place is
-//! an error by its name.
+//! A checkpoint holds the whole state and nothing that follows from it: no grid and no buffers. Rows keep their order and
+//! their blocks, so that a run goes on with the same bits. Reading trusts nothing: an array that is missing, of another
+//! length, not finite or out of range is an error that names it.
 
 use super::State;
 use super::probes::Readings;
@@ -24,41 +23,54 @@ use crate::transfer::gather::MOST_CELLS;
 use core::fmt;
 use std::sync::Arc;
 
-/// The state of a simulation between two frames.
+/// The state of a simulation between two frames, as named arrays; made by
+/// [`Simulate::checkpoint`](crate::Simulate::checkpoint).
+///
+/// ```
+/// use lahar::{Setup, Simulate, Simulation};
+///
+/// let jelly = lahar::material::preset("jelly", 0.0).ok_or("unknown")?;
+/// let mut simulation = Simulation::<f32, 2>::new(Setup::new(0.02, vec![jelly]), &[])?;
+/// let mut checkpoint = simulation.checkpoint();
+/// checkpoint.arrays.retain(|array| array.name != "gravity");
+/// let error = simulation.resume(checkpoint).err().ok_or("it is damaged")?;
+/// assert_eq!(error.to_string(), "array \"gravity\": is missing");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
-    /// Every array once.
+    /// The arrays, each name once.
     pub arrays: Vec<Array>,
 }
 
-/// A checkpoint that a simulation cannot go on from.
+/// The problem of a checkpoint that a simulation cannot go on from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CheckpointError {
-    /// The array, by its name.
+    /// The name of the array.
     pub array: String,
-    /// What is wrong with it.
-    pub what: String,
+    /// The problem with the array.
+    pub problem: String,
 }
 
 impl fmt::Display for CheckpointError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "array \"{}\": {}", self.array, self.what)
+        write!(f, "array \"{}\": {}", self.array, self.problem)
     }
 }
 
 impl core::error::Error for CheckpointError {}
 
-fn wrong<R>(array: &str, what: impl Into<String>) -> Result<R, CheckpointError> {
+fn wrong<R>(array: &str, problem: impl Into<String>) -> Result<R, CheckpointError> {
     Err(CheckpointError {
         array: array.into(),
-        what: what.into(),
+        problem: problem.into(),
     })
 }
 
-/// Cells by which sums of steps may be off: with [`DRIFT_LIMIT`] less than a tile's margin.
+/// Bound on the rounding of sums of steps \[cells\]: with [`DRIFT_LIMIT`] it is less than a tile's margin.
 const ROUNDING: f64 = 9e-4;
 
-/// What a column of a group holds, and the number of its component.
+/// Returns the field of a column of a group, and the number of the component.
 fn column_name(column: usize, dimension: usize) -> (&'static str, usize) {
     if column >= Layout::strain(dimension) {
         ("strain", column - Layout::strain(dimension))
@@ -71,7 +83,7 @@ fn column_name(column: usize, dimension: usize) -> (&'static str, usize) {
     }
 }
 
-/// Of one number for all a single number, else an array.
+/// Returns the shape of a single number if all particles share it, else that of an array.
 fn shape_of<T>(of: &PerParticle<T>) -> Vec<usize> {
     match of {
         PerParticle::Uniform(_) => Vec::new(),
@@ -86,7 +98,7 @@ fn numbers_of<T: Copy>(of: &PerParticle<T>) -> Vec<T> {
     }
 }
 
-/// Arrays on their way into a checkpoint.
+/// The arrays of a checkpoint that is written.
 #[derive(Default)]
 struct Out(Vec<Array>);
 
@@ -104,7 +116,7 @@ impl Out {
     }
 }
 
-/// A hand as numbers: where, radius, softening, what it does.
+/// Numbers of a pointer: position, radius, softening, kind and numbers of its action.
 const POINTER: usize = 9;
 
 fn pointer_numbers(pointer: &Pointer) -> [f64; POINTER] {
@@ -244,7 +256,7 @@ impl<T: Instance<D>, const D: usize> State<T, D> {
         }
     }
 
-    /// Checks that no id is there twice, and that an id that is not there has left.
+    /// Checks that no two particles share an id, and that all ids without a particle have left.
     fn check_ids(&self) -> Result<(), CheckpointError> {
         let mut ids: Vec<u32> = Vec::new();
         for group in &self.groups {
@@ -462,7 +474,7 @@ fn uniform_or_each<T: Copy>(
     }
 }
 
-/// Runs cover all rows, blocks ascending.
+/// Reads the runs, which must cover all rows in ascending order of blocks.
 fn read_runs<const D: usize>(
     arrays: &mut In,
     of: &str,
@@ -500,11 +512,12 @@ fn read_runs<const D: usize>(
     Ok(blocks.iter().zip(starts).zip(ends).map(run).collect())
 }
 
-/// Arrays of a checkpoint that were not read yet.
+/// The arrays of a checkpoint that were not read yet.
 struct In(Vec<Array>);
 
 impl In {
-    /// The array of that name: its shape, and its numbers by `of`, which turns away other types.
+    /// Takes out the array of that name. Returns its shape and its numbers, converted by `of`, which returns `None` for
+    /// another type.
     fn take<V>(
         &mut self,
         name: &str,
@@ -528,7 +541,7 @@ impl In {
         }
     }
 
-    /// An array of double precision, none of it a NaN.
+    /// Takes out an array of double precision without NaN.
     fn f64s(&mut self, name: &str) -> Result<(Vec<usize>, Vec<f64>), CheckpointError> {
         let (shape, values) = self.take(name, Values::f64s)?;
         if values.iter().any(|x| x.is_nan()) {
@@ -579,6 +592,9 @@ impl In {
         let pointer = <[f64; POINTER]>::try_from(values)
             .ok()
             .and_then(pointer_from);
-        pointer.map_or_else(|| wrong("pointer", "is no hand"), |hand| Ok(Some(hand)))
+        pointer.map_or_else(
+            || wrong("pointer", "is no pointer"),
+            |pointer| Ok(Some(pointer)),
+        )
     }
 }

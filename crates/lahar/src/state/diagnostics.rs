@@ -1,4 +1,4 @@
-//! What the whole of the particles comes to: one row of diagnostics.csv. In f64, in a fixed order.
+//! Diagnostics: totals over all particles, in f64 and in a fixed order. They are one row of diagnostics.csv.
 
 use super::State;
 use super::workspace::Workspace;
@@ -8,19 +8,19 @@ use crate::particles::{DRIFT_LIMIT, Group, Layout, PerParticle, Run};
 use crate::setup::check::CheckedSetup;
 use crate::setup::{Transfer, to_3d};
 
-/// Totals at one moment. Vectors have three components; in 2D the third is zero, and angular
-/// momentum is its third component.
+/// Totals over all particles at one moment; see [`Simulate::diagnostics`](crate::Simulate::diagnostics). Vectors have three
+/// components. In 2D the third is zero, but for angular momentum, where it is the only one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnostics {
     /// Simulated time \[s\].
     pub time: f64,
-    /// Substeps since the start.
+    /// Number of substeps since the start.
     pub substeps: u64,
     /// Shortest substep since the frame began \[s\]; 0 if there was none.
     pub dt_min: f64,
-    /// What limited it.
+    /// The limit of that substep, by [`DtLimit::name`](crate::DtLimit::name).
     pub dt_limit: &'static str,
-    /// Particles.
+    /// Number of particles.
     pub particles: u64,
     /// Σ over groups of equal particles of count × mass \[kg\].
     pub mass: f64,
@@ -36,13 +36,13 @@ pub struct Diagnostics {
     pub potential_energy: f64,
     /// Largest particle speed \[m/s\].
     pub max_speed: f64,
-    /// Space that is filled: Σ over cells of min(1, rest volume in it / dxᴰ) dxᴰ \[m³\].
+    /// Volume of the space that is filled: Σ over cells of min(1, rest volume in it / dxᴰ) dxᴰ \[m³\].
     pub volume: f64,
     /// Σ J V⁰ \[m³\].
     pub particle_volume: f64,
-    /// Particles that left through open sides since the start.
+    /// Number of particles that have left through open sides since the start.
     pub escaped: u64,
-    /// Their mass \[kg\].
+    /// Mass of the particles that have left \[kg\].
     pub escaped_mass: f64,
 }
 
@@ -119,13 +119,13 @@ fn measure_sorted<T: Instance<D>, const D: usize>(
     row
 }
 
-/// Blocks that are worth a piece of parallel work of their own.
+/// The smallest number of blocks that is worth a piece of work of its own.
 const SMALLEST_PIECE: usize = 16;
 
-/// What particles come to; the fields of [`Diagnostics`] that are sums over them.
+/// Sums over particles, for the fields of [`Diagnostics`].
 #[derive(Clone, Copy, Default)]
 struct Totals {
-    /// Mass of particles that have one each.
+    /// Mass of the particles of groups in which masses differ.
     each_mass: f64,
     momentum: [f64; 3],
     angular_momentum: [f64; 3],
@@ -137,7 +137,7 @@ struct Totals {
 }
 
 impl Totals {
-    /// Of one block's particles; `strain` is room for one's.
+    /// Sums over the particles of one block; `strain` is a buffer for the strain of one particle.
     fn of<T: Instance<D>, const D: usize>(
         scene: &CheckedSetup<D>,
         gravity: [f64; D],

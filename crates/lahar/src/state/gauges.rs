@@ -1,5 +1,5 @@
-//! What gauges read. In f64 and in the order of rows, so that bits do not depend on threads; only
-//! blocks that a gauge can see are looked at.
+//! Readings of gauges. They are computed in f64 and in the order of rows, so that bits do not depend on threads, and from
+//! the blocks in reach of the gauge only.
 
 use super::sensor;
 use crate::instance::Instance;
@@ -11,21 +11,21 @@ use crate::setup::{Gauge, Plate};
 use crate::state::State;
 use crate::state::workspace::Workspace;
 
-/// Cells that a particle may be out of its block between sorts.
+/// Distance that a particle may be outside of its block between sorts \[cells\].
 const DRIFT: f64 = 1.0;
 
-/// How little the slope of the fit (16) is held to zero: a ten-thousandth of a radius squared is nothing
-/// where there are particles all around, and keeps two of them from setting a slope.
+/// Weight of a slope of zero in the fit (16), in radii squared. It is too small to matter with particles all around, and
+/// keeps two particles from setting a slope.
 const SLOPE_RIDGE: f64 = 1e-4;
 
-/// Part of the range of what particles around a gauge have by which it may read more, or less: on a wall a
-/// linear pressure is a quarter of the range above its highest particle.
+/// How far a reading may be outside of the range of the particles around the gauge, as a part of that range. On a wall, a
+/// linear pressure is a quarter of the range above that of the highest particle.
 const MOST_BEYOND: f64 = 0.5;
 
-/// Part of a cell that counts as inside the surface.
+/// The part of a cell that must be filled for the cell to be below the surface.
 const SURFACE: f64 = 0.5;
 
-/// Reads probe `index`.
+/// Reads probe `index`. Returns the numbers that [`Gauge::columns`] names.
 pub(super) fn measure<T: Instance<D>, const D: usize>(
     scene: &CheckedSetup<D>,
     state: &mut State<T, D>,
@@ -60,8 +60,7 @@ pub(super) fn measure<T: Instance<D>, const D: usize>(
     }]
 }
 
-/// Where the pressure on a plate is read: half a radius apart at the most, each the middle of an
-/// equal part.
+/// Lists the points at which the pressure on a plate is read: the middles of equal parts, at most half a radius apart.
 fn points<const D: usize>(at: [f64; D], plate: Option<&Plate<D>>, radius: f64) -> Vec<[f64; D]> {
     let Some(plate) = plate else {
         return vec![at];
@@ -83,7 +82,7 @@ fn points<const D: usize>(at: [f64; D], plate: Option<&Plate<D>>, radius: f64) -
     points
 }
 
-/// Unit vectors across `normal`: one in 2D (the second is zero), two in 3D.
+/// Returns unit vectors across `normal`: one in 2D, where the second is zero, and two in 3D.
 fn tangents<const D: usize>(normal: [f64; D]) -> [[f64; D]; 2] {
     let unit = |v: [f64; D]| {
         let length = v.iter().map(|v| v * v).sum::<f64>().sqrt();
@@ -138,14 +137,14 @@ fn for_near<T: Lanes, const D: usize>(
     }
 }
 
-/// Weight of the particle at `b` for a node at `a`, its mirror images in the walls across `axis` included.
+/// Returns the weight of the particle at `b` for a node at `a`, with its mirror images in the walls across `axis`.
 fn mirrored_weight<const D: usize>(scene: &CheckedSetup<D>, axis: usize, a: f64, b: f64) -> f64 {
     let planes = scene.walls.planes.iter().filter(|plane| plane.axis == axis);
     let images = planes.map(|plane| weight(2.0 * plane.node as f64 - b - a));
     weight(scene.lattice.offset_on(axis, a, b)) + images.sum::<f64>()
 }
 
-/// The quadratic kernel, whatever the run's is: the weight of a node for a particle `s` cells away.
+/// Returns the weight of a node for a particle `s` cells away, by the quadratic kernel whatever kernel the setup has.
 fn weight(s: f64) -> f64 {
     let past = s - Quadratic::OFFSET;
     let base = past.floor();
@@ -158,7 +157,7 @@ fn weight(s: f64) -> f64 {
     }
 }
 
-/// The pressure at a point \[Pa\].
+/// Returns the pressure at a point \[Pa\].
 fn pressure<T: Lanes, const D: usize>(
     scene: &CheckedSetup<D>,
     state: &State<T, D>,
@@ -167,17 +166,17 @@ fn pressure<T: Lanes, const D: usize>(
 ) -> f64 {
     let fit = fitted(scene, state, at, radius, |_, _, pressure| [pressure]);
     fit.map_or(0.0, |[fit]| {
-        // What is pressed everywhere does not pull in between.
+        // Between particles that are all pressed there is no tension.
         let least = if fit.low < 0.0 {
             f64::NEG_INFINITY
         } else {
             0.0
         };
-        fit.held().max(least)
+        fit.clamped().max(least)
     })
 }
 
-/// The velocity at a point \[m/s\].
+/// Returns the velocity at a point \[m/s\].
 fn velocity<T: Lanes, const D: usize>(
     scene: &CheckedSetup<D>,
     state: &State<T, D>,
@@ -188,29 +187,29 @@ fn velocity<T: Lanes, const D: usize>(
         core::array::from_fn(|axis| group.columns[Layout::velocity(D) + axis][row].to_f64())
     };
     let fit = fitted(scene, state, at, radius, velocity);
-    fit.map_or([0.0; D], |axes| axes.map(Fitted::held))
+    fit.map_or([0.0; D], |axes| axes.map(Fitted::clamped))
 }
 
-/// What a plane through what particles have says of the point in their midst.
+/// A quantity at a point, from a plane fitted to that of the particles around it.
 #[derive(Clone, Copy, Debug)]
 struct Fitted {
     value: f64,
-    /// The least and the most that a particle has.
+    /// The smallest and the largest value of a particle.
     low: f64,
     high: f64,
 }
 
 impl Fitted {
-    /// A plane is no fit of an impact: what it says beyond what is there is cut off.
-    fn held(self) -> f64 {
+    /// Returns the value, clamped near the range of the particles: a plane does not fit an impact.
+    fn clamped(self) -> f64 {
         let beyond = MOST_BEYOND * (self.high - self.low);
         self.value.clamp(self.low - beyond, self.high + beyond)
     }
 }
 
-/// (16): `quantities` of particles at a point, from planes fitted to those around it; `None` if there are
-/// none. A mean alone would be what is where the particles are: on a wall, half a radius inside. Quantities
-/// are asked of a group, a row and its Cauchy pressure \[Pa\].
+/// Fits planes to `quantities` of the particles around a point, (16). Returns `None` if there are no particles. A mean would
+/// be the value at the middle of the particles: for a point on a wall, half a radius inside. `quantities` is called with a
+/// group, a row and its Cauchy pressure \[Pa\].
 fn fitted<T: Lanes, const D: usize, const N: usize>(
     scene: &CheckedSetup<D>,
     state: &State<T, D>,
@@ -267,7 +266,7 @@ fn fitted<T: Lanes, const D: usize, const N: usize>(
     }))
 }
 
-/// J V⁰ \[m³\] and Cauchy pressure \[Pa\] of a particle.
+/// Returns J V⁰ \[m³\] and Cauchy pressure \[Pa\] of a particle.
 fn volume_and_pressure<T: Lanes, const D: usize>(group: &Group<T, D>, row: usize) -> (f64, f64) {
     let at = |column: usize| group.columns[column][row].to_f64();
     let strain: Vec<f64> = (0..group.law.strain_columns())
@@ -282,7 +281,7 @@ fn volume_and_pressure<T: Lanes, const D: usize>(group: &Group<T, D>, row: usize
     )
 }
 
-/// The first of D + 1 unknowns of a symmetric positive system, by elimination from the last.
+/// Returns the first of D + 1 unknowns of a symmetric positive system, by elimination from the last.
 fn first_unknown<const D: usize>(mut a: [[f64; 4]; 4], mut b: [f64; 4]) -> f64 {
     for k in (1..=D).rev() {
         for i in 0..k {
@@ -296,8 +295,8 @@ fn first_unknown<const D: usize>(mut a: [[f64; 4]; 4], mut b: [f64; 4]) -> f64 {
     b[0] / a[0][0]
 }
 
-/// The surface in a column: the highest place where half of the space is filled, as the quadratic
-/// kernel sees it.
+/// Returns the coordinate of the surface in a column \[m\]: the highest place where half of the space is filled, by weights
+/// of the quadratic kernel.
 fn column_height<T: Lanes, const D: usize>(
     scene: &CheckedSetup<D>,
     state: &State<T, D>,
@@ -356,7 +355,7 @@ fn column_height<T: Lanes, const D: usize>(
     }
 }
 
-/// The filled volume over the domain's area \[m\], from its lower side.
+/// Returns the mean height of the surface \[m\]: the filled volume over the domain's area, from its lower side.
 fn mean_height<T: Instance<D>, const D: usize>(
     scene: &CheckedSetup<D>,
     state: &mut State<T, D>,
@@ -368,7 +367,7 @@ fn mean_height<T: Instance<D>, const D: usize>(
     scene.lattice.origin[up] + volume / across(scene, |axis| axis != up)
 }
 
-/// Product of the domain's sides on the axes in `seen` \[m^n\]; 1 for none.
+/// Returns the product of the lengths of the domain on the axes in `seen` \[m^n\]; 1 for no axis.
 fn across<const D: usize>(scene: &CheckedSetup<D>, seen: impl Fn(usize) -> bool) -> f64 {
     let side = |axis: usize| {
         let domain = scene.setup.domain.as_ref();
@@ -377,7 +376,7 @@ fn across<const D: usize>(scene: &CheckedSetup<D>, seen: impl Fn(usize) -> bool)
     (0..D).filter(|&axis| seen(axis)).map(side).product()
 }
 
-/// The end of the last column of one cell that is deeper than `depth` \[m\].
+/// Returns the end of the last column of one cell that is deeper than `depth` \[m\].
 fn front<T: Lanes, const D: usize>(
     scene: &CheckedSetup<D>,
     state: &State<T, D>,

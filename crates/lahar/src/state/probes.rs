@@ -1,11 +1,10 @@
-//! Gauges in the scene: pressure and velocity at a place, the height of a surface, how far a front has
-//! come, the force on a boundary.
+//! Probes: when they are read, and their readings until someone asks for them.
 //!
 //! ```text
-//! substep ─► is one due? ─► gauges.rs measures ─► kept ─► Simulate::take_probe_samples
+//! substep ──▶ probes that are due ──gauges.rs──▶ State::readings ──▶ Simulate::take_probe_samples
 //! ```
-//! A probe looks and changes nothing: it is read at the end of the first substep at or after the
-//! moment it is due, and no substep is shortened for it. So a run has the same bits with and without.
+//! A probe is read at the end of the first substep at or after the moment it is due. No substep is shortened for it, so a
+//! run has the same bits with and without probes.
 
 use super::State;
 use super::gauges;
@@ -15,21 +14,21 @@ use crate::math::Lanes;
 use crate::setup::check::CheckedSetup;
 use crate::setup::{ProbeSample, ProbeSamples};
 
-/// What a probe keeps between readings.
+/// The state of one probe.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Readings {
-    /// Those that were not taken yet.
+    /// Readings that nobody has asked for yet.
     pub(crate) samples: Vec<ProbeSample>,
-    /// Time \[s\] of the last one, and the impulse \[N s\] that its boundary had taken till then.
+    /// Time of the last reading \[s\], and the impulse that its boundary had taken until then \[N s\].
     pub(crate) last: (f64, [f64; 3]),
-    /// The impulse on the face of a gauge in a wall since then, per area \[N s/m²; N s/m² in 2D too\].
+    /// Impulse on the face of a gauge in a wall since the last reading, per area \[N s/m², in 2D too\].
     pub(crate) pressed: f64,
 }
 
-/// How far, in its own intervals, a moment may be missed by rounding.
+/// How far a moment may be missed by rounding, in intervals of the probe.
 const MOMENT_TOLERANCE: f64 = 1e-9;
 
-/// Number of the last moment at which a probe was due at `time`, from 0 at the start.
+/// Returns the number of the last moment at which a probe was due up to `time`, from 0 at the start.
 fn moments(rate: f64, time: f64) -> f64 {
     (time * rate + MOMENT_TOLERANCE).floor()
 }

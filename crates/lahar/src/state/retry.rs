@@ -1,21 +1,21 @@
-//! Frames that fail are tried again from their start, with half the time step.
+//! Retries: a frame that fails is tried again from its start, with half the time step.
 
 use crate::error::Failure;
 use crate::math::Lanes;
 use crate::state::State;
 use core::fmt;
 
-/// How often a frame's time step is halved before the simulation is given up: to 1/64.
+/// Number of times that the time step of a frame is halved before the frame is given up: to 1/64.
 const MOST_HALVINGS: u32 = 6;
 
 /// A frame that failed and is tried again.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Retry {
-    /// Where it goes on from: the start of the frame \[s\].
+    /// The start of the frame, from which it goes on \[s\].
     pub time: f64,
-    /// What part of the usual time step it takes now.
+    /// The part of the usual time step that it takes from now on.
     pub part: f64,
-    /// What happened.
+    /// The failure that ended the attempt.
     pub failure: Failure,
 }
 
@@ -32,7 +32,7 @@ impl fmt::Display for Retry {
 }
 
 impl Retry {
-    /// What to say of a failure that no shorter time step has helped.
+    /// Returns a message for a failure that remained with the shortest time step.
     pub fn in_vain(failure: &Failure) -> String {
         let least = 2_u32.pow(MOST_HALVINGS);
         format!(

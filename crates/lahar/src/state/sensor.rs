@@ -1,4 +1,4 @@
-//! Pressure gauges in walls: they feel what the wall takes, as a sensor does.
+//! Pressure gauges in walls: they measure the impulse that the wall takes, as a sensor does.
 
 use crate::grid::Grid;
 use crate::math::Lanes;
@@ -6,7 +6,7 @@ use crate::setup::check::CheckedSetup;
 use crate::setup::{Gauge, Plate};
 use crate::state::State;
 
-/// How far from a wall's plane a gauge may be to be in it \[cells\].
+/// Distance from a wall's plane within which a gauge is in the wall \[cells\].
 const IN_WALL: f64 = 1e-3;
 
 /// Adds to each gauge in a wall the impulse on its face in the last grid update, over the face's area.
@@ -58,7 +58,7 @@ struct Sensor<const D: usize> {
 }
 
 impl<const D: usize> Sensor<D> {
-    /// Gauge `index`, if it is in a wall.
+    /// Returns gauge `index` as a sensor if it is in a wall.
     fn of(scene: &CheckedSetup<D>, index: usize) -> Option<Self> {
         let Gauge::Pressure { at, radius, plate } = &scene.setup.probes[index].gauge else {
             return None;
@@ -86,14 +86,14 @@ impl<const D: usize> Sensor<D> {
         })
     }
 
-    /// Distance of `place` from the middle of the face, along the wall \[cells\].
+    /// Returns the distance of `place` from the middle of the face, along the wall \[cells\].
     fn distance_along_wall(&self, scene: &CheckedSetup<D>, place: [f64; D]) -> f64 {
         let across = (0..D).filter(|&k| k != self.axis);
         let offset = |k: usize| scene.lattice.offset_on(k, self.at[k], place[k]);
         across.map(|k| offset(k).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// The area of the face in cells, as nodes weigh it: those that walls cut in half count half.
+    /// Returns the area of the face in cells. Nodes that walls cut in half count half.
     fn cells(&self, scene: &CheckedSetup<D>) -> f64 {
         let reach = self.face.outer.ceil() as i64;
         let width = 2 * reach + 1;
@@ -112,7 +112,7 @@ impl<const D: usize> Sensor<D> {
     }
 }
 
-/// The share of a node's cell that is inside of the walls across `axis`: half of it for a node on a wall.
+/// Returns the share of a node's cell that is inside of the walls across `axis`: half of it for a node on a wall.
 fn share_of_cell<const D: usize>(scene: &CheckedSetup<D>, axis: usize, node: f64) -> f64 {
     let walls = scene.walls.planes.iter().filter(|plane| plane.axis == axis);
     walls
@@ -123,7 +123,7 @@ fn share_of_cell<const D: usize>(scene: &CheckedSetup<D>, axis: usize, node: f64
         .product()
 }
 
-/// The face of a gauge, in cells: full weight up to `inner` from its middle, none from `outer` on.
+/// The face of a gauge: its weight is full up to `inner` from its middle, and none from `outer` on \[cells\].
 #[derive(Clone, Copy, Debug)]
 struct Face {
     inner: f64,
@@ -131,9 +131,10 @@ struct Face {
 }
 
 impl Face {
-    /// A node's impulse is that of a cell around it: no face is smaller.
+    /// The smallest width of a face: a node's impulse is that of a whole cell around it.
     const LEAST: f64 = 1.0;
 
+    /// The face of a point that looks as far as `radius`.
     fn point(radius: f64) -> Self {
         Self {
             inner: 0.0,
@@ -141,7 +142,7 @@ impl Face {
         }
     }
 
-    /// A plate of this width, its edge blurred over a cell.
+    /// The face of a plate of this width, with an edge that is one cell wide.
     fn plate(width: f64) -> Self {
         let half = (0.5 * width).max(0.5 * Self::LEAST);
         Self {
@@ -150,6 +151,7 @@ impl Face {
         }
     }
 
+    /// Returns the weight of the face at `distance` from its middle.
     fn covers(self, distance: f64) -> f64 {
         ((self.outer - distance) / (self.outer - self.inner)).clamp(0.0, 1.0)
     }

@@ -1,4 +1,4 @@
-//! Copies of particles for everything outside: rows by ascending id, whatever the order of storage.
+//! Snapshots: copies of particles by ascending id, whatever the order of storage.
 
 use super::State;
 use crate::instance::Instance;
@@ -8,22 +8,23 @@ use crate::particles::{Data, Field, Snapshot};
 use crate::particles::{Group, Layout, MOST_COLUMNS};
 use crate::setup::check::CheckedSetup;
 
-/// Where a particle lies.
+/// The place of a particle in storage.
 #[derive(Clone, Copy)]
 struct Place {
     group: u32,
     row: u32,
 }
 
-/// The place of an id that no particle has any more.
-const NOWHERE: Place = Place {
+/// The place of an id whose particle has left.
+const LEFT: Place = Place {
     group: u32::MAX,
     row: u32::MAX,
 };
 
-/// Rows that are worth a piece of parallel work of their own.
+/// The smallest number of particles that is worth a piece of work of its own.
 const SMALLEST_PIECE: usize = 1 << 13;
 
+/// Copies `fields` of all particles.
 pub(crate) fn snapshot<T: Instance<D>, const D: usize>(
     scene: &CheckedSetup<D>,
     state: &State<T, D>,
@@ -53,9 +54,9 @@ pub(crate) fn snapshot<T: Instance<D>, const D: usize>(
     }
 }
 
-/// Places by ascending id. Ids are given in order, so each has its slot and nothing need be sorted.
+/// Lists the places of all particles by ascending id. Each id has its slot, so nothing need be sorted.
 fn places<T: Instance<D>, const D: usize>(state: &State<T, D>) -> Vec<Place> {
-    let mut slots = vec![NOWHERE; state.next_id as usize];
+    let mut slots = vec![LEFT; state.next_id as usize];
     let mut count = 0;
     for (index, group) in state.groups.iter().enumerate() {
         count += group.id.len();
@@ -67,12 +68,12 @@ fn places<T: Instance<D>, const D: usize>(state: &State<T, D>) -> Vec<Place> {
         }
     }
     if count < slots.len() {
-        slots.retain(|place| place.group != NOWHERE.group);
+        slots.retain(|place| place.group != LEFT.group);
     }
     slots
 }
 
-/// The block of each row of a group.
+/// Lists the block of each row of a group.
 fn blocks<T: Instance<D>, const D: usize>(group: &Group<T, D>) -> Vec<[i32; D]> {
     let mut blocks = Vec::with_capacity(group.id.len());
     for run in &group.runs {
@@ -81,7 +82,7 @@ fn blocks<T: Instance<D>, const D: usize>(group: &Group<T, D>) -> Vec<[i32; D]> 
     blocks
 }
 
-/// A field that is stored as it is.
+/// Copies a field that is stored as it is.
 fn column<T: Instance<D>, const D: usize>(
     scene: &CheckedSetup<D>,
     state: &State<T, D>,
@@ -124,7 +125,7 @@ fn column<T: Instance<D>, const D: usize>(
     }
 }
 
-/// Whether a field follows from the strain by the material's law.
+/// Returns true for a field that follows from the strain by the law of the material.
 fn is_described(field: Field) -> bool {
     match field {
         Field::Jacobian | Field::DeformationGradient | Field::Variable(_) | Field::Pressure => true,
@@ -139,7 +140,7 @@ fn is_described(field: Field) -> bool {
     }
 }
 
-/// The described ones of `fields`, in that order; the law is asked once a particle.
+/// Computes those of `fields` that follow from the strain, in that order. The law is called once per particle.
 fn described<T: Instance<D>, const D: usize>(
     state: &State<T, D>,
     fields: &[Field],
@@ -165,7 +166,7 @@ fn described<T: Instance<D>, const D: usize>(
     values
 }
 
-/// Halves the work until pieces are small enough, and does it.
+/// Computes the fields of all `places`, in halves on all threads down to pieces of `grain` particles.
 fn describe_pieces<T: Instance<D>, const D: usize>(
     state: &State<T, D>,
     places: &[Place],
@@ -226,7 +227,7 @@ fn describe_pieces<T: Instance<D>, const D: usize>(
     }
 }
 
-/// `width` numbers a place, side by side.
+/// Fills an array with `width` numbers per place.
 fn fill<U: Copy + Default + Send>(
     places: &[Place],
     width: usize,

@@ -1,28 +1,28 @@
-//! How long a substep is, and why.
+//! The clock, and the length of the next substep with the limit that decides it.
 
 use crate::error::DtLimit;
 use crate::setup::TimeStep;
 
-/// Part of the explicit limit dx²/(2 d ν) that viscosity is given.
+/// The part of the explicit limit dx²/(2 d ν) that viscosity allows.
 const VISCOUS_SAFETY: f64 = 0.5;
 
-/// Frames that a shortened step must do, the one that asked for it included, before it is doubled; twice as
-/// many after each further frame that failed.
+/// Number of frames that must succeed with a shortened step, the failed frame included, before it is doubled. Each
+/// further frame that fails doubles this number.
 const CLEAN_FRAMES: u32 = 4;
 
-/// So many failed frames make recovering no slower.
-const MOST_PATIENCE: u32 = 12;
+/// Number of failed frames after which the step grows back no more slowly.
+const MOST_DOUBLINGS: u32 = 12;
 
-/// More parts of a substep than any number of frames that failed asks for.
+/// A bound on the parts that a substep is divided into; no number of failed frames asks for more.
 const MOST_PARTS: f64 = 9007199254740992.0;
 
-/// Substeps are counted exactly as real numbers up to this; no run comes near it.
+/// The number up to which substeps are counted exactly as real numbers; no run comes near it.
 const MOST_SUBSTEPS: u64 = 1 << f64::MANTISSA_DIGITS;
 
-/// Substeps left to a moment that are still evened out, so that the last is not a splinter.
-const EVEN_OUT: f64 = 2.0;
+/// Number of remaining substeps from which on they are made equal, so that the last one is not very short.
+const EQUAL_STEPS: f64 = 2.0;
 
-/// Chooses each substep from the state that the last one left.
+/// Chooses the length of each substep from the state after the last one.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct StepControl {
     step: TimeStep,
@@ -39,22 +39,22 @@ pub(crate) struct StepControl {
     pub(crate) gravity: f64,
     /// Largest acceleration by other forces \[m/s²\].
     pub(crate) field: f64,
-    /// Substeps taken.
+    /// Number of substeps taken.
     pub(crate) substeps: u64,
     time: f64,
     shortest: (f64, DtLimit),
-    /// The part of the usual substep that is taken, since a frame had to be tried again; 1 else.
+    /// The part of the usual substep that is taken: less than 1 after a retry.
     part: f64,
-    /// Frames done at this part.
+    /// Number of frames that have begun with this part.
     clean_frames: u32,
-    /// Frames that had to be tried again.
+    /// Number of frames that had to be tried again.
     failed_frames: u32,
-    /// With a fixed step: the time at which the part changed, and the substeps then.
+    /// Time and number of substeps when the part last changed, for a fixed step.
     changed: (f64, u64),
 }
 
 impl StepControl {
-    /// A control at time 0, with gravity of size `gravity` \[m/s²\].
+    /// Creates a control at time 0, with gravity of size `gravity` \[m/s²\].
     pub(crate) fn new(step: TimeStep, dx: f64, gravity: f64) -> Self {
         Self {
             step,
@@ -75,9 +75,9 @@ impl StepControl {
         }
     }
 
-    /// All that is not setup, for checkpoints.
+    /// Returns all that is not setup, for checkpoints.
     pub(crate) fn numbers(&self) -> ([f64; 10], [u64; 5]) {
-        // By name, so that a new field asks whether it belongs here.
+        // Each field by name, so that a new one is not forgotten.
         let Self {
             step: _,
             dx: _,
@@ -118,7 +118,7 @@ impl StepControl {
         )
     }
 
-    /// This with what [`Self::numbers`] has given; `None` if it cannot have given them.
+    /// Returns this control with what [`Self::numbers`] has returned, or `None` if it cannot have returned that.
     pub(crate) fn with_numbers(&self, numbers: [f64; 10], counts: [u64; 5]) -> Option<Self> {
         let [
             speed,
@@ -145,7 +145,7 @@ impl StepControl {
             && changed.is_finite()
             && changed_substeps <= substeps
             && substeps <= MOST_SUBSTEPS
-            && clean_frames <= u64::from(CLEAN_FRAMES << MOST_PATIENCE)
+            && clean_frames <= u64::from(CLEAN_FRAMES << MOST_DOUBLINGS)
             && (1.0..=MOST_PARTS).contains(&whole_parts)
             && (whole_parts as u64).is_power_of_two();
         sound.then_some(())?;
@@ -179,7 +179,7 @@ impl StepControl {
         }
     }
 
-    /// The next substep if nothing but the state limits it.
+    /// Returns the length of the next substep \[s\] if only the state limits it, and that limit.
     pub(crate) fn next(&self) -> (f64, DtLimit) {
         let (dt, limit) = self.usual();
         if self.part < 1.0 {
@@ -189,7 +189,7 @@ impl StepControl {
         }
     }
 
-    /// How many substeps make one that the scene fixes the length of.
+    /// Returns how many substeps make up one fixed dt.
     pub(crate) fn per_fixed(&self) -> u64 {
         match self.step {
             TimeStep::Fixed(_) => (1.0 / self.part) as u64, // a power of two
@@ -197,20 +197,19 @@ impl StepControl {
         }
     }
 
-    /// A frame is done and the next begins: a shortened step slowly recovers, the more slowly the more
-    /// often that went wrong.
+    /// Begins a frame. A shortened step grows back, the more slowly the more frames have failed.
     pub(crate) fn begin_frame(&mut self) {
         self.shortest = (f64::INFINITY, DtLimit::Frame);
         if self.part < 1.0 {
             self.clean_frames += 1;
-            let failures = self.failed_frames.clamp(1, MOST_PATIENCE) - 1;
+            let failures = self.failed_frames.clamp(1, MOST_DOUBLINGS) - 1;
             if self.clean_frames >= CLEAN_FRAMES << failures {
                 self.take_part(2.0 * self.part);
             }
         }
     }
 
-    /// Halves the step, `halvings` times; returns what part of the usual it is now.
+    /// Halves the step `halvings` times. Returns the part of the usual step that it is now.
     pub(crate) fn shorten(&mut self, halvings: u32) -> f64 {
         self.take_part(self.part * 0.5_f64.powi(halvings as i32));
         self.failed_frames = self.failed_frames.saturating_add(1);
@@ -223,13 +222,13 @@ impl StepControl {
         self.clean_frames = 0;
     }
 
-    /// The next substep without regard to retries.
+    /// Returns the next substep as if no frame had been retried.
     fn usual(&self) -> (f64, DtLimit) {
         let (cfl, longest) = match self.step {
             TimeStep::Fixed(dt) => return (dt, DtLimit::Fixed),
             TimeStep::Automatic { cfl, longest } => (cfl, longest),
         };
-        // What gravity and forces add before the particle has crossed its part of a cell.
+        // Gravity and forces add to the speed while a particle crosses its part of a cell.
         let speed = self.speed + (cfl * self.dx * (self.gravity + self.field)).sqrt();
         let limits = [
             (cfl * self.dx / self.wave_speed, DtLimit::Sound),
@@ -248,7 +247,7 @@ impl StepControl {
             })
     }
 
-    /// The next substep on the way to `time`; `None` when there.
+    /// Returns the next substep on the way to `time` \[s\], or `None` at that time.
     pub(crate) fn towards(&self, time: f64) -> Option<(f64, DtLimit)> {
         let left = time - self.time();
         let (dt, limit) = self.next();
@@ -268,14 +267,14 @@ impl StepControl {
                     limit
                 },
             ))
-        } else if steps <= EVEN_OUT {
+        } else if steps <= EQUAL_STEPS {
             Some((left / steps, limit))
         } else {
             Some((dt, limit))
         }
     }
 
-    /// A substep has been taken.
+    /// Counts a substep that was taken.
     pub(crate) fn advance(&mut self, dt: f64, limit: DtLimit) {
         self.substeps += 1;
         self.time += dt;
@@ -284,14 +283,14 @@ impl StepControl {
         }
     }
 
-    /// The substeps to `time` are done: what their rounded sum missed is made up.
+    /// Sets the clock to `time` \[s\] after the substeps up to it, whose sum is rounded.
     pub(crate) fn arrived(&mut self, time: f64) {
         if self.time < time || self.time - time < 1e-9 * time.abs() {
             self.time = time;
         }
     }
 
-    /// The shortest substep since the frame began; (0, frame) if there was none.
+    /// Returns the shortest substep since the frame began, or (0, frame) if there was none.
     pub(crate) fn shortest(&self) -> (f64, DtLimit) {
         let (dt, limit) = self.shortest;
         if dt.is_finite() {

@@ -287,7 +287,7 @@ fn damaged_arrays_are_named_and_nothing_changes() {
             let name = &good.arrays[index].name;
             let error = other.resume(damaged(&good, index, how));
             let error = error.expect_err(&format!("{name} damaged by {how}"));
-            assert!(!error.what.is_empty() && error.to_string().contains(&error.array));
+            assert!(!error.problem.is_empty() && error.to_string().contains(&error.array));
         }
     }
     let mut more = good.clone();
@@ -365,7 +365,7 @@ fn impossible_values_are_refused() {
         simulation
             .resume(bad)
             .expect_err("twice")
-            .what
+            .problem
             .contains("two particles")
     );
 }
@@ -386,7 +386,7 @@ fn particles_outside_the_walls_are_refused() {
         .resume(bad)
         .expect_err("no particle can be there");
     assert!(
-        error.array == name && error.what.contains("walls"),
+        error.array == name && error.problem.contains("walls"),
         "{error}"
     );
 }
