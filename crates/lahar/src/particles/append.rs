@@ -13,7 +13,7 @@ use crate::setup::{Deformation, ParticleBatch};
 /// Bounds of the places that particles may have on each axis \[cells\].
 type Bounds<const D: usize> = [(Option<f64>, Option<f64>); D];
 
-/// Where new particles may be.
+/// The space that new particles are placed in.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Placement<'a, const D: usize> {
     pub(crate) lattice: &'a Lattice<D>,

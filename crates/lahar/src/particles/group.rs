@@ -21,7 +21,7 @@ use crate::math::Lanes;
 use crate::parallel;
 use std::sync::Arc;
 
-/// Where each field's columns begin: position, velocity, affine (column by column), strain.
+/// The first column of each field: position, velocity, affine (column by column), strain.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout;
 
@@ -47,9 +47,9 @@ pub(crate) struct Group<T: Lanes, const D: usize> {
     pub(crate) sound_speed: f64,
     /// The fields by [`Layout`], one number per particle in each column.
     pub(crate) columns: Vec<Vec<T>>,
-    /// Mass \[kg\].
+    /// Masses of the particles \[kg\].
     pub(crate) mass: PerParticle<T>,
-    /// Volume at rest \[m³; m² in 2D\].
+    /// Volumes at rest \[m³; m² in 2D\].
     pub(crate) volume0: PerParticle<T>,
     pub(crate) id: Vec<u32>,
     pub(crate) body: PerParticle<u32>,

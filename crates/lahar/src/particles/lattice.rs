@@ -10,7 +10,7 @@ pub(crate) const fn block_edge(dimension: usize) -> usize {
     if dimension == 2 { 8 } else { 4 }
 }
 
-/// Where nodes and blocks are.
+/// The positions of nodes and blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Lattice<const D: usize> {
     /// Distance between nodes \[m\].

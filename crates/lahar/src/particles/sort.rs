@@ -11,6 +11,7 @@ use super::per_particle::PerParticle;
 use super::run::Run;
 use crate::boundary::walls::Walls;
 use crate::math::Lanes;
+use crate::parallel;
 use core::ops::Range;
 use core::sync::atomic::{AtomicU32, Ordering};
 use std::collections::HashMap;
@@ -90,63 +91,14 @@ impl<T: Lanes, const D: usize> Sorter<T, D> {
             walls,
             lattice,
         };
-        let pieces = &mut self.pieces[..used];
         let columns = ColumnsMut::new(&mut group.columns[..D]);
-        old.assign(pieces, columns, &mut self.keys, 0);
-        let mut escaped = Escaped::default();
-        if walls.has_open() {
-            let gone = self
-                .keys
-                .iter()
-                .enumerate()
-                .filter(|&(_, &key)| key == GONE);
-            for (row, _) in gone {
-                escaped.count += 1;
-                escaped.mass += group.mass.get(row).to_f64();
-            }
-        }
-
-        // Blocks in ascending order; the first row of each block, and in it of each piece.
-        self.found.clear();
-        for (piece, number) in pieces.iter().zip(0..) {
-            let of_piece = piece.blocks.iter().zip(0..);
-            self.found
-                .extend(of_piece.map(|(&block, local)| (block, number, local)));
-        }
-        self.found.sort_unstable(); // pieces in the order of their rows
-        group.runs.clear();
-        let mut start = 0;
-        for &(block, piece, local) in &self.found {
-            let place = &mut pieces[piece as usize].places[local as usize];
-            let end = start + core::mem::replace(place, start);
-            match group.runs.last_mut() {
-                Some(run) if run.block == block => run.end = end,
-                _ => group.runs.push(Run {
-                    block,
-                    start,
-                    end,
-                    tile: 0,
-                    first: false,
-                }),
-            }
-            start = end;
-        }
-
-        // The old row of each new row.
-        self.source.resize_with(start as usize, AtomicU32::default);
-        let (keys, source) = (&self.keys, &self.source);
-        crate::parallel::for_chunks(pieces, 1, 0, 1, &|_, pieces: &mut [Piece<D>]| {
-            for piece in pieces {
-                for row in piece.rows.clone() {
-                    let key = keys[row];
-                    if key != GONE {
-                        let place = &mut piece.places[key as usize];
-                        source[*place as usize].store(row as u32, Ordering::Relaxed);
-                        *place += 1;
-                    }
-                }
-            }
-        });
+        old.assign(&mut self.pieces[..used], columns, &mut self.keys, 0);
+        let escaped = match walls.has_open() {
+            true => self.escaped(&group.mass),
+            false => Escaped::default(),
+        };
+        let rows = self.find_runs(used, &mut group.runs);
+        self.find_sources(used, rows);
 
         for column in &mut group.columns {
             permute(&self.source, column, &mut self.column);
@@ -163,9 +115,70 @@ impl<T: Lanes, const D: usize> Sorter<T, D> {
         escaped
     }
 
+    /// Counts and weighs the rows that have left.
+    fn escaped(&self, mass: &PerParticle<T>) -> Escaped {
+        let mut escaped = Escaped::default();
+        let gone = self.keys.iter().enumerate();
+        for (row, _) in gone.filter(|&(_, &key)| key == GONE) {
+            escaped.count += 1;
+            escaped.mass += mass.get(row).to_f64();
+        }
+        escaped
+    }
+
+    /// Writes the new runs, in ascending order of blocks, from the rows that the first `used` pieces have found in each
+    /// block. Leaves the first place of each block's rows in each piece. Returns the number of rows.
+    fn find_runs(&mut self, used: usize, runs: &mut Vec<Run<D>>) -> usize {
+        let pieces = &mut self.pieces[..used];
+        self.found.clear();
+        for (piece, number) in pieces.iter().zip(0..) {
+            let of_piece = piece.blocks.iter().zip(0..);
+            self.found
+                .extend(of_piece.map(|(&block, local)| (block, number, local)));
+        }
+        self.found.sort_unstable(); // pieces in the order of their rows
+        runs.clear();
+        let mut start = 0;
+        for &(block, piece, local) in &self.found {
+            let place = &mut pieces[piece as usize].places[local as usize];
+            let end = start + core::mem::replace(place, start);
+            match runs.last_mut() {
+                Some(run) if run.block == block => run.end = end,
+                _ => runs.push(Run {
+                    block,
+                    start,
+                    end,
+                    tile: 0,
+                    first: false,
+                }),
+            }
+            start = end;
+        }
+        start as usize
+    }
+
+    /// Finds the old row of each of the `rows` new rows, piece by piece on all threads.
+    fn find_sources(&mut self, used: usize, rows: usize) {
+        self.source.resize_with(rows, AtomicU32::default);
+        let (keys, source) = (&self.keys, &self.source);
+        let pieces = &mut self.pieces[..used];
+        parallel::for_chunks(pieces, 1, 0, 1, &|_, pieces: &mut [Piece<D>]| {
+            for piece in pieces {
+                for row in piece.rows.clone() {
+                    let key = keys[row];
+                    if key != GONE {
+                        let place = &mut piece.places[key as usize];
+                        source[*place as usize].store(row as u32, Ordering::Relaxed);
+                        *place += 1;
+                    }
+                }
+            }
+        });
+    }
+
     /// Cuts the `rows` rows of `runs` into pieces of about equal size. Returns the number of pieces.
     fn cut(&mut self, runs: &[Run<D>], rows: usize) -> usize {
-        let grain = crate::parallel::grain(rows, SMALLEST_PIECE);
+        let grain = parallel::grain(rows, SMALLEST_PIECE);
         let (mut used, mut first) = (0, 0);
         for (index, run) in runs.iter().enumerate() {
             let start = runs[first].start as usize;
@@ -209,7 +222,7 @@ impl<const D: usize> Old<'_, D> {
                 let row = high[0].rows.start;
                 let (low_positions, high_positions) = positions.split_at(row - first_row);
                 let (low_keys, high_keys) = keys.split_at_mut(row - first_row);
-                crate::parallel::join(
+                parallel::join(
                     || self.assign(low, low_positions, low_keys, first_row),
                     || self.assign(high, high_positions, high_keys, row),
                 );
@@ -307,7 +320,7 @@ fn has_left<const D: usize>(cells: &[f64; D], walls: &Walls<D>) -> bool {
     })
 }
 
-/// `column[i] ← column[source[i]]`.
+/// Permutes a column: `column[i] ← column[source[i]]`.
 fn permute<U: Copy + Default + Send + Sync>(
     source: &[AtomicU32],
     column: &mut Vec<U>,
@@ -315,11 +328,11 @@ fn permute<U: Copy + Default + Send + Sync>(
 ) {
     buffer.resize(source.len(), U::default()); // every number is replaced
     let from = &column[..];
-    crate::parallel::for_chunks(
+    parallel::for_chunks(
         buffer,
         1,
         0,
-        crate::parallel::grain(source.len(), SMALLEST_PIECE),
+        parallel::grain(source.len(), SMALLEST_PIECE),
         &|first, piece| {
             for (value, row) in piece.iter_mut().zip(&source[first..]) {
                 *value = from[row.load(Ordering::Relaxed) as usize];

@@ -66,7 +66,7 @@ pub struct Pointer {
     pub radius: f64,
     /// Length \[m\] within which attraction goes to zero, so that it has no jump of direction at the pointer.
     pub softening: f64,
-    /// Its effect.
+    /// Its effect on the material.
     pub action: PointerAction,
 }
 

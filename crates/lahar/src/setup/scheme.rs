@@ -1,13 +1,14 @@
-//! The transfer scheme: what the loops between particles and nodes need to know of a setup.
+//! The scheme: kernel, form of the force and transfer, for the loops between particles and nodes.
 
 use super::{ForceForm, Kernel, Transfer};
 
-/// What the loops need to know of scheme, kernel and step; all lengths in cells.
+/// The part of a setup that the loops between particles and nodes depend on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scheme {
     pub(crate) kernel: Kernel,
     pub(crate) force: ForceForm,
     pub(crate) transfer: Transfer,
+    /// Distance between nodes \[m\].
     pub(crate) dx: f64,
 }
 
@@ -27,7 +28,7 @@ impl Scheme {
         self.kernel.inverse_inertia()
     }
 
-    /// Planes of quads a node needs: two where velocity before forces is asked for.
+    /// Number of quads per node: two where particles need the velocity before forces, else one.
     pub(crate) fn planes(self) -> usize {
         if matches!(self.transfer, Transfer::Flip { .. }) {
             2

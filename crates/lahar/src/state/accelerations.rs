@@ -10,7 +10,7 @@ use crate::setup::check::CheckedSetup;
 /// Particles that forces are asked about at a time.
 const ROWS: usize = 64;
 
-/// Which forces to evaluate.
+/// The forces to evaluate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum ActingOn {
     /// Those that act on nodes.

@@ -408,7 +408,7 @@ fn read_group<T: Instance<D>, const D: usize>(
     if id.iter().any(|&id| id >= next_id) {
         return wrong(&name, "has numbers that were never given");
     }
-    // Where a row can have come to since it was sorted: what is further could be beyond its tile.
+    // A row that is further from the middle than it can have drifted since the last sort could be beyond its tile.
     let reach = 0.5 * block_edge(D) as f64 + drift + ROUNDING;
     let mut columns = Vec::with_capacity(group.columns.len());
     for column in 0..group.columns.len() {

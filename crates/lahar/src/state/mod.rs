@@ -43,7 +43,7 @@ pub(crate) struct State<T: Lanes, const D: usize> {
     pub(crate) drift: f64,
     /// Time since the fluids' volumes were last corrected \[s\].
     pub(crate) time_since_correction: f64,
-    /// What each boundary has taken since the start, by the number of the domain's side and then by collider;
+    /// Impulses that each boundary has taken since the start, by the number of the domain's side and then by collider;
     /// lengths in meters.
     pub(crate) boundary_totals: Vec<Taken<D>>,
     /// Readings of each probe that nobody has asked for yet.

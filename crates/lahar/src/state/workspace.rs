@@ -12,7 +12,7 @@ use crate::setup::Scheme;
 use crate::setup::check::CheckedSetup;
 use crate::transfer::scatter::What;
 
-/// What a substep works with besides the state. Nothing in it outlives a substep but the layout of the grid,
+/// The buffers and constants of the substep. Nothing in it outlives a substep but the layout of the grid,
 /// which follows from the blocks that the particles are in.
 pub(crate) struct Workspace<T, const D: usize> {
     pub(crate) scheme: Scheme,
@@ -23,7 +23,7 @@ pub(crate) struct Workspace<T, const D: usize> {
     pub(crate) sorts: u64,
     /// The colliders in the present substep.
     pub(crate) colliders: Vec<Moving<D>>,
-    /// What colliders take by projecting particles out, by run.
+    /// Impulses that colliders take by projecting particles out, by run.
     pub(crate) impulses_by_run: Vec<Taken<D>>,
 }
 

@@ -8,7 +8,7 @@ pub(crate) enum Phase {
     Scatter,
     Grid,
     Gather,
-    /// Everything else.
+    /// All other stages; their times count for no phase.
     Other,
 }
 
@@ -21,7 +21,7 @@ pub struct PhaseTimes {
     pub volume: f64,
     /// Particles to grid.
     pub scatter: f64,
-    /// Grid update.
+    /// Sums, forces and boundaries on the grid.
     pub grid: f64,
     /// Grid to particles, the laws' updates included.
     pub gather: f64,
