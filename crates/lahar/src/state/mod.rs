@@ -187,3 +187,74 @@ impl<T: Lanes, const D: usize> State<T, D> {
             .collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::workspace::Workspace;
+    use super::{State, add};
+    use crate::boundary::{Contact, Domain, Sides, WallStyle};
+    use crate::instance::Kernels;
+    use crate::material::preset;
+    use crate::setup::check::CheckedSetup;
+    use crate::setup::{ParticleBatch, Setup};
+    use crate::step::{STAGE_COUNT, substep};
+
+    /// A column of water that has just begun to collapse.
+    fn scene() -> CheckedSetup<2> {
+        let mut setup = Setup::new(0.1, vec![preset("water", 10.0).expect("a preset")]);
+        let wall = Contact::Separate { friction: 0.0 };
+        setup.gravity = [0.0, -9.81];
+        setup.domain = Some(Domain {
+            min: [0.0; 2],
+            max: [3.0, 2.0],
+            sides: [Sides::Walls {
+                low: wall,
+                high: wall,
+            }; 2],
+            style: WallStyle::Plane,
+        });
+        CheckedSetup::new(setup).expect("a good setup")
+    }
+
+    fn take_substeps(
+        scene: &CheckedSetup<2>,
+        state: &mut State<f32, 2>,
+        workspace: &mut Workspace<f32, 2>,
+    ) {
+        for _ in 0..60 {
+            let next = state.control.next();
+            let times = (None, &mut [0.0; STAGE_COUNT]);
+            substep(scene, state, workspace, next, times).expect("water runs");
+        }
+    }
+
+    #[test]
+    fn a_copy_goes_on_with_another_workspace() {
+        let scene = scene();
+        let law = <f32 as Kernels<2>>::built_in(&scene.setup.materials[0].model);
+        let mut state = State::new(&scene, vec![law]);
+        let mut workspace = Workspace::new(&scene).expect("any instruction set");
+        let place = |i: usize| 0.05 * (i as f64 + 0.5);
+        let column = ParticleBatch {
+            position: (0..400).map(|i| [place(i / 20), place(i % 20)]).collect(),
+            volume: vec![0.05 * 0.05],
+            ..ParticleBatch::default()
+        };
+        add::add(&scene, &mut state, &mut workspace, [column]).expect("a good batch");
+        take_substeps(&scene, &mut state, &mut workspace);
+
+        let copy = state.clone();
+        assert!(copy == state);
+        take_substeps(&scene, &mut state, &mut workspace);
+        assert!(copy != state);
+
+        let mut other = copy.clone();
+        let mut fresh = Workspace::new(&scene).expect("any instruction set");
+        fresh.rebuild(&scene, &mut other);
+        take_substeps(&scene, &mut other, &mut fresh);
+        assert!(other == state, "the state decides all that follows");
+
+        state.clone_from(&copy);
+        assert!(state == copy);
+    }
+}
