@@ -28,7 +28,8 @@ use crate::material::Material;
 ///
 /// ```
 /// use lahar::{
-///     Collider, Contact, Domain, Force, ParticleBatch, Setup, Sides, Simulate, Simulation, WallStyle, Primitive,
+///     Collider, Contact, Domain, Force, ParticleBatch, Primitive, Setup, Sides, Simulate, Simulation,
+///     WallStyle,
 /// };
 ///
 /// // Water at rest would get this speed of sound: ten times the fastest flow that is expected.
