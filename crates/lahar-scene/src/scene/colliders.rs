@@ -6,6 +6,7 @@ use super::files::{EmbeddedFiles, Files};
 use super::limits::Limits;
 use super::read::Reader;
 use super::shapes::read_shape;
+use super::space::vector_in_3d;
 use crate::error::SceneError;
 use lahar::geometry::{Primitive, Shape};
 use lahar::{Collider, Contact, Keyframe, Motion};
@@ -226,26 +227,25 @@ pub(super) fn infos<const D: usize>(
 
 /// A collider as it is in space: in 2D without end along z.
 fn in_space<const D: usize>(collider: &Collider<D>) -> Collider<3> {
-    let three = |v: [f64; D]| core::array::from_fn(|i| if i < D { v[i] } else { 0.0 });
     let space = |primitive: &Primitive<D>| match primitive {
         Primitive::Box { center, half, axes } => Primitive::Box {
-            center: three(*center),
+            center: vector_in_3d(*center),
             half: core::array::from_fn(|i| if i < D { half[i] } else { f64::INFINITY }),
             axes: core::array::from_fn(|i| {
                 if i < D {
-                    three(axes[i])
+                    vector_in_3d(axes[i])
                 } else {
                     core::array::from_fn(|j| f64::from(i == j))
                 }
             }),
         },
         Primitive::Ball { center, radius } => Primitive::Ball {
-            center: three(*center),
+            center: vector_in_3d(*center),
             radius: *radius,
         },
         Primitive::HalfSpace { point, normal } => Primitive::HalfSpace {
-            point: three(*point),
-            normal: three(*normal),
+            point: vector_in_3d(*point),
+            normal: vector_in_3d(*normal),
         },
         Primitive::Rod {
             from,
@@ -253,24 +253,24 @@ fn in_space<const D: usize>(collider: &Collider<D>) -> Collider<3> {
             radius,
             round,
         } => Primitive::Rod {
-            from: three(*from),
-            to: three(*to),
+            from: vector_in_3d(*from),
+            to: vector_in_3d(*to),
             radius: *radius,
             round: *round,
         },
         Primitive::Polygon { points } => Primitive::Polygon {
-            points: points.iter().copied().map(three).collect(),
+            points: points.iter().copied().map(vector_in_3d).collect(),
         },
     };
     Collider {
         name: collider.name.clone(),
         primitives: collider.primitives.iter().map(space).collect(),
         contact: collider.contact,
-        center: three(collider.center),
+        center: vector_in_3d(collider.center),
         motion: match &collider.motion {
             Motion::Still => Motion::Still,
             Motion::Steady { velocity, spin } => Motion::Steady {
-                velocity: three(*velocity),
+                velocity: vector_in_3d(*velocity),
                 spin: *spin,
             },
             Motion::Keyframes(frames) => Motion::Keyframes(
@@ -278,7 +278,7 @@ fn in_space<const D: usize>(collider: &Collider<D>) -> Collider<3> {
                     .iter()
                     .map(|frame| Keyframe {
                         time: frame.time,
-                        position: three(frame.position),
+                        position: vector_in_3d(frame.position),
                         turn: frame.turn,
                     })
                     .collect(),

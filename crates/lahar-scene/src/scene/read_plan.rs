@@ -221,3 +221,38 @@ fn read_time_step(scene: &Reader<'_>) -> Result<TimeStep, SceneError> {
         longest: scene.opt_number("dt_max").unwrap_or(f64::INFINITY),
     })
 }
+
+/// Frames per simulated second, if the scene does not say \[1/s\].
+const USUAL_FRAME_RATE: f64 = 60.0;
+
+/// Reads `frame_rate` and `substeps_per_frame`: frames per second, and substeps per frame where they are fixed.
+pub(super) fn read_frames(
+    scene: &Reader<'_>,
+    time_step: TimeStep,
+) -> Result<(f64, Option<u64>), SceneError> {
+    let rate = scene.opt_number("frame_rate");
+    let Some(substeps) = scene.opt_integer("substeps_per_frame") else {
+        return Ok((rate.unwrap_or(USUAL_FRAME_RATE), None));
+    };
+    let TimeStep::Fixed(dt) = time_step else {
+        return Err(scene
+            .error_at_key(
+                "substeps_per_frame",
+                "\"substeps_per_frame\" needs a fixed dt",
+            )
+            .hint("add dt = .., in seconds"));
+    };
+    let comes_to = 1.0 / (dt * substeps as f64);
+    match rate {
+        Some(rate) if (rate / comes_to - 1.0).abs() > 1e-9 => {
+            let error = scene.error_at(
+                "frame_rate",
+                format!(
+                    "{substeps} substeps of {dt} s come to {comes_to} frames a second, not {rate}"
+                ),
+            );
+            Err(error.hint("remove frame_rate or substeps_per_frame"))
+        }
+        _ => Ok((comes_to, Some(substeps))),
+    }
+}

@@ -1,6 +1,7 @@
 //! The table of keys made into what others read: a JSON schema for editors, and the tables of
 //! docs/scene-format.md.
 
+use super::document::{Span, json as json_of, literal};
 use super::key::{Bound, Key, Kind, Section, WhenAbsent};
 use super::keys::sections;
 use super::material::{ELASTIC, MATERIAL, MODELS, Preset, SceneModel};
@@ -32,9 +33,9 @@ fn object(section: &Section) -> Value {
         if let Some(map) = value.as_object_mut() {
             map.insert("description".to_owned(), json!(description(key)));
             if let WhenAbsent::Value(text) | WhenAbsent::ByDimension(text, _) = key.default
-                && let Some(node) = super::document::literal(text, super::Span::default())
+                && let Some(node) = literal(text, Span::default())
             {
-                map.insert("default".to_owned(), super::document::json(&node));
+                map.insert("default".to_owned(), json_of(&node));
             }
         }
         properties.insert(key.name.to_owned(), value);

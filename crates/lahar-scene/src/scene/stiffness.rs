@@ -4,7 +4,7 @@ use super::forces::expect;
 use super::material::Stiffness;
 use super::plan::{Body, Plan};
 use super::read::Reader;
-use super::three;
+use super::space::{bounds_in_3d, vector_in_3d};
 use crate::error::SceneError;
 use lahar::geometry::Bounds;
 use lahar::{Command, Model, TimeStep};
@@ -125,21 +125,14 @@ impl<const D: usize> Plan<D> {
         let follows = !matches!(self.time_step, TimeStep::Fixed(_));
         SoundSpeeds {
             materials: (self.automatic.iter().filter(|_| follows).map(speed)).collect(),
-            gravity: three(self.gravity),
+            gravity: vector_in_3d(self.gravity),
             falls: Falls {
-                bodies: falls.bodies.iter().map(in_three).collect(),
-                room: in_three(&falls.room),
-                forces: three(falls.forces),
+                bodies: falls.bodies.iter().map(bounds_in_3d).collect(),
+                room: bounds_in_3d(&falls.room),
+                forces: vector_in_3d(falls.forces),
                 squared: falls.squared,
             },
         }
-    }
-}
-
-fn in_three<const D: usize>(bounds: &Bounds<D>) -> Bounds<3> {
-    Bounds {
-        min: three(bounds.min),
-        max: three(bounds.max),
     }
 }
 

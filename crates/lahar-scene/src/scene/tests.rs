@@ -4,7 +4,8 @@ use super::check::{accepts, model_of};
 use super::document::{Document, Node, Table, Value};
 use super::key::{Kind, Section};
 use super::keys::{SCENE, sections};
-use super::*;
+use super::{Scene, docs, docs_of, schema};
+use lahar::Isa;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/scene-format.md");
 

@@ -14,7 +14,7 @@ use super::document::{Sources, Span, Value, from_json};
 use super::key::Kind;
 use super::keys;
 use super::read::Reader;
-use super::three;
+use super::space::vector_in_3d;
 
 /// A scene as windows and pictures show it. Vectors have three components; 2D ignores the third.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -225,7 +225,7 @@ impl SceneView {
 /// Two or three numbers; the third is 0 in 2D.
 fn vector(table: &Reader<'_>, key: &str) -> Option<[f64; 3]> {
     let in_3d = table.opt_vector::<3>(key);
-    in_3d.or_else(|| table.opt_vector::<2>(key).map(three))
+    in_3d.or_else(|| table.opt_vector::<2>(key).map(vector_in_3d))
 }
 
 fn gravity(scene: &Reader<'_>) -> [f64; 3] {
