@@ -1,15 +1,16 @@
-//! A writer whose first error is its last.
+//! A writer that reports only its first error.
 
 use std::io::{self, Seek, SeekFrom, Write};
 
-/// Passes on what is written until that fails; from then on it takes everything, drops it, and tells of places as
-/// if it were there. The zip writer ends
-/// its archive when it is dropped, and prints if it cannot: a library does not print, and the error that is worth
-/// telling was told already.
+/// Passes bytes on to a writer until that fails. From then on it accepts and drops everything, and reports positions
+/// as if it had been written.
+///
+/// The zip writer ends its archive when it is dropped, and prints if that fails. A library must not print, and the
+/// first error has been reported already.
 pub(crate) struct AfterError<W> {
     inner: W,
     failed: bool,
-    /// Where the next byte would go.
+    /// The position of the next byte.
     position: u64,
 }
 
@@ -86,7 +87,7 @@ mod tests {
                 .and_then(|()| archive.start_file("b", options).map_err(io::Error::other))
                 .and_then(|()| archive.write_all(&[8; 1000]));
             assert!(written.is_err(), "{room} bytes hold no 2000");
-            // What would be printed when it is dropped.
+            // The zip writer would print this error when it is dropped.
             archive.finish().unwrap();
         }
     }

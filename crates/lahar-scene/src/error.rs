@@ -1,4 +1,4 @@
-//! The one error of loading a scene: what is wrong, in which line, and what to write instead.
+//! The one error type of this crate: the fault of a scene, its line, and what to write instead.
 //!
 //! ```text
 //! error: unknown key "gravty"
@@ -11,30 +11,38 @@
 
 use core::fmt;
 
-/// Longest part of a line that is shown \[characters\]: particle files have lines of any length.
+/// Longest part of a line that is shown \[characters\]. Lines of particle files may have any length.
 const SHOWN: usize = 120;
 
-/// Something is wrong with a scene, an override or a particle file.
+/// A fault of a scene, an override, or a file that the scene names.
+///
+/// ```
+/// use lahar_scene::scene::Scene;
+///
+/// let error = Scene::parse("gravty = [0.0, -9.81]", "dam.toml", &[]).unwrap_err();
+/// assert_eq!((error.line, error.column), (1, 1));
+/// assert_eq!(error.hint.as_deref(), Some("did you mean \"gravity\"?"));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
     /// The file, the built-in scene or the override ("--set dx").
     pub file: String,
-    /// Line, from 1; 0: no place in particular.
+    /// Line, counted from 1; 0 for an error of the whole file.
     pub line: usize,
-    /// Column in characters, from 1.
+    /// Column in characters, counted from 1.
     pub column: usize,
-    /// Characters that are meant.
+    /// Number of characters that the error points at.
     pub length: usize,
-    /// The line itself.
+    /// The text of the line.
     pub text: String,
-    /// What is wrong.
+    /// The fault.
     pub message: String,
-    /// What to do about it.
+    /// Advice on what to do.
     pub hint: Option<String>,
 }
 
 impl SceneError {
-    /// An error of a whole file.
+    /// Makes an error of a whole file.
     pub fn of_file(file: impl Into<String>, message: impl Into<String>) -> Self {
         Self {
             file: file.into(),
@@ -47,7 +55,7 @@ impl SceneError {
         }
     }
 
-    /// An error of the bytes `start..end` of `text`, the content of `file`.
+    /// Makes an error that points at the bytes `start..end` of `text`, the content of `file`.
     pub fn at(
         file: impl Into<String>,
         text: &str,
@@ -71,14 +79,14 @@ impl SceneError {
         }
     }
 
-    /// The same with advice.
+    /// Returns the error with advice added.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
         self
     }
 
-    /// As text of several lines; with terminal colours if `color`.
+    /// Returns the error as text of several lines, with terminal colors if `color` is true.
     pub fn render(&self, color: bool) -> String {
         let paint = |code: &str, text: &str| {
             if color {
@@ -112,8 +120,8 @@ impl SceneError {
         out
     }
 
-    /// The part of the line around the column, in characters that take one place each, with the
-    /// caret's offset and length in it.
+    /// Returns the part of the line around the column, in characters that take one place each, and the offset
+    /// and length of the caret in it.
     fn excerpt(&self) -> (String, usize, usize) {
         let column = self.column.saturating_sub(1);
         let first = if column < SHOWN {
@@ -146,7 +154,7 @@ impl SceneError {
     }
 }
 
-/// The nearest start of a character at or before byte `at`.
+/// Returns the start of the character that byte `at` belongs to.
 fn floor_boundary(text: &str, mut at: usize) -> usize {
     while !text.is_char_boundary(at) {
         at -= 1;
@@ -162,7 +170,7 @@ impl fmt::Display for SceneError {
 
 impl core::error::Error for SceneError {}
 
-/// The candidate nearest to `word`, if it is near enough to be meant.
+/// Returns the candidate nearest to `word`, if it is near enough to be meant.
 pub(crate) fn nearest<'a>(
     word: &str,
     candidates: impl IntoIterator<Item = &'a str>,
@@ -179,7 +187,7 @@ pub(crate) fn nearest<'a>(
         .map(|(_, candidate)| candidate)
 }
 
-/// Insertions, deletions, replacements and swaps of neighbours from one word to the other.
+/// Returns the number of insertions, deletions, replacements and swaps of neighbors between two words.
 fn distance(a: &str, b: &str) -> usize {
     let a: Vec<char> = a.chars().take(64).collect();
     let b: Vec<char> = b.chars().take(64).collect();

@@ -1,33 +1,33 @@
 //! Formulas in scene files: "0.1*sin(pi*x/50)" → a short program, run on many points at once.
 //!
 //! ```text
-//! text ─► parser (precedence, bounded depth) ─► postfix program ─► columns of numbers
+//! text ─► parser (precedence, bounded depth) ─► postfix program ─► values at many points
 //!                                                x 3 * sin          a stack of blocks of 64
 //! ```
 //!
-//! Functions come from `libm`, so that a formula gives the same bits on every machine. Errors know
-//! their place in the text.
+//! Functions come from `libm`, so that a formula gives the same bits on every machine. Errors carry their
+//! place in the text.
 
 use core::fmt;
 use core::ops::Range;
 
-/// What is wrong with a formula.
+/// A fault of a formula.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct ExpressionError {
-    /// Bytes of the text that are meant.
+    /// The bytes of the text that the error points at.
     pub(crate) place: Range<usize>,
-    /// What is wrong.
+    /// The fault.
     pub(crate) message: String,
-    /// What to write instead.
+    /// Advice on what to write instead.
     pub(crate) hint: Option<String>,
 }
 
-/// A formula, ready to be evaluated.
+/// A formula that is ready to be evaluated.
 #[derive(Clone, PartialEq)]
 pub(crate) struct Expression {
     text: String,
     program: Vec<Op>,
-    /// Blocks on the stack at the most.
+    /// Largest number of blocks on the stack.
     stack: usize,
 }
 
@@ -48,11 +48,11 @@ enum Op {
     Multiply,
     Divide,
     Compare(Comparison),
-    /// One number, by its place in [`UNARY`].
+    /// A function of one number, by its index in [`UNARY`].
     Unary(usize),
-    /// Two, by its place in [`BINARY`].
+    /// A function of two numbers, by its index in [`BINARY`].
     Binary(usize),
-    /// Three, by its place in [`TERNARY`].
+    /// A function of three numbers, by its index in [`TERNARY`].
     Ternary(usize),
 }
 
@@ -103,7 +103,7 @@ const UNARY: &[(&str, Unary)] = &[
     ("sign", |a| f64::from(i8::from(a > 0.0) - i8::from(a < 0.0))),
 ];
 
-/// Functions of two.
+/// Functions of two numbers.
 const BINARY: &[(&str, Binary)] = &[
     ("pow", libm::pow),
     ("atan2", libm::atan2),
@@ -113,7 +113,7 @@ const BINARY: &[(&str, Binary)] = &[
     ("mod", |a, b| a - b * libm::floor(a / b)),
 ];
 
-/// Functions of three.
+/// Functions of three numbers.
 const TERNARY: &[(&str, Ternary)] = &[
     ("if", |c, a, b| if c != 0.0 { a } else { b }),
     ("clamp", |a, low, high| libm::fmin(libm::fmax(a, low), high)),
@@ -129,24 +129,24 @@ const CONSTANTS: &[(&str, f64)] = &[
     ("e", core::f64::consts::E),
 ];
 
-/// Names of all functions, those of one number first.
+/// Returns the names of all functions, those of one number first.
 pub(crate) fn functions() -> impl Iterator<Item = &'static str> {
     let one = UNARY.iter().map(|(name, _)| *name);
     let two = BINARY.iter().map(|(name, _)| *name);
     one.chain(two).chain(TERNARY.iter().map(|(name, _)| *name))
 }
 
-/// Points that are evaluated at once.
+/// Points that are evaluated together.
 pub(crate) const BLOCK: usize = 64;
 
-/// Numbers that a formula may have to keep at a time without asking for memory.
+/// Numbers that fit on the stack of an evaluation without allocating memory.
 const SHALLOW: usize = 8;
 
 impl Expression {
     /// Longest formula \[bytes\].
     pub(crate) const LONGEST: usize = 10_000;
 
-    /// Reads a formula in `variables`, which have the numbers 0, 1, .. in this order.
+    /// Reads a formula in `variables`, which are numbered 0, 1, .. in this order.
     ///
     /// # Errors
     /// The first thing that is wrong, with its place.
@@ -182,7 +182,7 @@ impl Expression {
         })
     }
 
-    /// A number as a formula.
+    /// Makes a formula of a number.
     pub(crate) fn number(number: f64) -> Self {
         Self {
             text: number.to_string(),
@@ -191,7 +191,7 @@ impl Expression {
         }
     }
 
-    /// Its value, if it has no variable in it.
+    /// Returns the value of a formula without variables.
     pub(crate) fn constant(&self) -> Option<f64> {
         match self.program[..] {
             [Op::Number(number)] => Some(number),
@@ -199,15 +199,15 @@ impl Expression {
         }
     }
 
-    /// Whether it contains the variable number `variable`.
+    /// Returns true if the formula contains variable number `variable`.
     pub(crate) fn uses(&self, variable: usize) -> bool {
         self.program.contains(&Op::Variable(variable))
     }
 
-    /// Its value at every point: `fill(variable, first, column)` writes the values of a variable at
-    /// the points `first..first + column.len()`.
+    /// Evaluates the formula at every point: `fill(variable, first, values)` writes the values of a variable at
+    /// the points `first..first + values.len()`.
     pub(crate) fn evaluate(&self, out: &mut [f64], fill: impl Fn(usize, usize, &mut [f64])) {
-        // Few formulas are so deep that they have to ask for memory.
+        // Only very deep formulas allocate memory.
         let (mut shallow, mut deep) = ([[0.0; BLOCK]; SHALLOW], Vec::new());
         let stack = if self.stack <= SHALLOW {
             &mut shallow[..]
@@ -217,7 +217,7 @@ impl Expression {
         };
         for (block, out) in out.chunks_mut(BLOCK).enumerate() {
             let count = out.len();
-            // The next free place on the stack.
+            // The next free block on the stack.
             let mut top = 0;
             for op in &self.program {
                 top -= op.operands();
@@ -255,7 +255,7 @@ fn pairs(a: &mut [f64], upper: &[[f64; BLOCK]], f: impl Fn(f64, f64) -> f64) {
 }
 
 impl Op {
-    /// Numbers it takes from the stack; it puts back one.
+    /// Returns how many numbers the operation takes from the stack. It puts back one.
     fn operands(self) -> usize {
         match self {
             Self::Number(_) | Self::Variable(_) => 0,
@@ -266,7 +266,7 @@ impl Op {
     }
 }
 
-/// Parentheses, signs and powers inside each other at the most.
+/// Deepest nesting of parentheses, signs and powers.
 const DEEPEST: usize = 100;
 
 struct Parser<'a> {
@@ -294,7 +294,7 @@ impl<'a> Parser<'a> {
         self.at = self.text.len() - self.rest().trim_start().len();
     }
 
-    /// Takes `word` if it comes next.
+    /// Consumes `word` if it comes next.
     fn take(&mut self, word: &str) -> bool {
         self.space();
         let found = self.rest().starts_with(word);
@@ -304,7 +304,7 @@ impl<'a> Parser<'a> {
         found
     }
 
-    /// What stands where something else should.
+    /// Makes the error of the next character, which cannot stand here.
     fn unexpected(&self) -> ExpressionError {
         let Some(c) = self.rest().chars().next() else {
             let mut error = self.error(
@@ -334,7 +334,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Adds an operation; of numbers only, its result.
+    /// Adds an operation, or its result if all of its operands are numbers.
     fn push(&mut self, op: Op) {
         let from = self.program.len() - op.operands();
         self.program.push(op);
@@ -354,7 +354,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// sum (< sum)?
+    /// Parses `sum (< sum)?`.
     fn comparison(&mut self) -> Result<(), ExpressionError> {
         self.sum()?;
         for (word, comparison) in [
@@ -372,7 +372,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// product (± product)*
+    /// Parses `product (± product)*`.
     fn sum(&mut self) -> Result<(), ExpressionError> {
         self.product()?;
         loop {
@@ -388,7 +388,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// factor (×÷ factor)*
+    /// Parses `factor (×÷ factor)*`.
     fn product(&mut self) -> Result<(), ExpressionError> {
         self.factor()?;
         loop {
@@ -404,7 +404,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// ±factor, or value (^ factor)?: −2^2 is −4, 2^3^2 is 2^9. All recursion passes here.
+    /// Parses `±factor` or `value (^ factor)?`: −2^2 is −4, 2^3^2 is 2^9. All recursion passes through here.
     fn factor(&mut self) -> Result<(), ExpressionError> {
         self.space();
         self.depth += 1;
@@ -437,7 +437,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// A number, a name, a call, or an expression in parentheses.
+    /// Parses a number, a name, a call, or an expression in parentheses.
     fn value(&mut self) -> Result<(), ExpressionError> {
         let start = self.at;
         match self.rest().chars().next() {
@@ -452,7 +452,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// The parenthesis that closes the one at `open`.
+    /// Expects the parenthesis that closes the one at `open`.
     fn close(&mut self, open: usize) -> Result<(), ExpressionError> {
         if self.take(")") {
             return Ok(());

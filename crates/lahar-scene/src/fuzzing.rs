@@ -1,4 +1,4 @@
-//! The readers of files that users hand in, as the targets in fuzz/ call them: bytes in, nothing out. A target fails by a
+//! The readers of files from users, as the targets in fuzz/ call them: bytes in, nothing out. A target fails by a
 //! panic, a hang or too much memory.
 
 use lahar::Isa;
@@ -7,10 +7,10 @@ use crate::expression::Expression;
 use crate::scene::{Limits, Scene};
 use crate::{mesh_file, particle_list, ply};
 
-/// Memory that a scene may ask for \[bytes\]: enough for some thousand particles, so that one takes no second.
+/// Memory that a scene may ask for \[bytes\]: enough for some thousand particles, which take under a second.
 const MEMORY: u64 = 1 << 20;
 
-/// A scene file; built, if it is sound and small.
+/// Reads a scene file, and builds it if it is sound and small.
 pub fn scene(bytes: &[u8]) {
     let Ok(text) = core::str::from_utf8(bytes) else {
         return;
@@ -22,7 +22,7 @@ pub fn scene(bytes: &[u8]) {
     }
 }
 
-/// A formula; evaluated, if it is one.
+/// Reads a formula, and evaluates it.
 pub fn expression(bytes: &[u8]) {
     let Ok(text) = core::str::from_utf8(bytes) else {
         return;
@@ -37,7 +37,7 @@ pub fn expression(bytes: &[u8]) {
     }
 }
 
-/// A list of particles as text.
+/// Reads a particle list from text.
 pub fn csv(bytes: &[u8]) {
     if let Ok(text) = core::str::from_utf8(bytes) {
         drop(particle_list::parse_csv::<2>(text, "fuzz.csv"));
@@ -45,13 +45,13 @@ pub fn csv(bytes: &[u8]) {
     }
 }
 
-/// A list of particles as PLY.
+/// Reads a particle list from PLY.
 pub fn ply(bytes: &[u8]) {
     drop(ply::parse_ply::<2>(bytes, "fuzz.ply"));
     drop(ply::parse_ply::<3>(bytes, "fuzz.ply"));
 }
 
-/// NumPy's archives and single arrays; a list of particles, if they are one.
+/// Reads NumPy's archives and single arrays, and makes particle lists of them.
 #[cfg(feature = "npz")]
 pub fn npz(bytes: &[u8]) {
     use crate::npz;
@@ -64,7 +64,7 @@ pub fn npz(bytes: &[u8]) {
     }
 }
 
-/// A mesh; its inside is asked for, if it is closed.
+/// Reads a mesh, and tests points against it if it is closed.
 pub fn mesh(bytes: &[u8], ending: &str) {
     if let Ok(mesh) = mesh_file::parse_mesh(bytes, &format!("fuzz.{ending}")) {
         let (low, high) = mesh.bounds();

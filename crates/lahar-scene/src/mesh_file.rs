@@ -1,16 +1,16 @@
-//! Triangle meshes from STL (text and binary) and OBJ files. Every error knows its place.
+//! Triangle meshes from STL (text and binary) and OBJ files. Every error carries its place.
 
 use crate::error::SceneError;
 use crate::text::{Lines, not_text, shorten};
 use lahar::geometry::{Mesh, MeshError};
 
-/// Corners, and faces by the numbers of theirs.
+/// Vertices \[m\], and triangles by the numbers of their corners.
 type Triangles = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
-/// Reads a mesh by its file's name and content.
+/// Reads a mesh file: `bytes` is its content, and the ending of `name` says which format it has.
 ///
 /// # Errors
-/// The first thing that is no mesh, or why it is no solid body.
+/// The first part of the file that is malformed, or the reason why the mesh encloses no body.
 pub(crate) fn parse_mesh(bytes: &[u8], name: &str) -> Result<Mesh, SceneError> {
     let lower = name.to_ascii_lowercase();
     let (vertices, faces) = if lower.ends_with(".stl") {
@@ -34,7 +34,7 @@ fn text<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, SceneError> {
     core::str::from_utf8(bytes).map_err(|error| not_text(name, bytes, error.valid_up_to()))
 }
 
-/// Bytes of a binary STL file before its triangles, and of each of them.
+/// Bytes of a binary STL file before its triangles, and bytes per triangle.
 const STL_HEADER: usize = 84;
 const STL_TRIANGLE: usize = 50;
 
@@ -44,7 +44,7 @@ fn parse_stl(bytes: &[u8], name: &str) -> Result<Triangles, SceneError> {
         .get(STL_HEADER - 4..STL_HEADER)
         .map(|n| u32::from_le_bytes([n[0], n[1], n[2], n[3]]) as usize);
     let whole = |n: usize| bytes.len() == STL_HEADER + STL_TRIANGLE * n;
-    // Binary files may begin with "solid" too; their length gives them away.
+    // Binary files may begin with "solid" too; their length tells them apart.
     let is_text = bytes.trim_ascii_start().starts_with(b"solid") && !promised.is_some_and(whole);
     if is_text {
         return parse_text_stl(text(bytes, name)?, name);
@@ -64,7 +64,7 @@ fn parse_stl(bytes: &[u8], name: &str) -> Result<Triangles, SceneError> {
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     let triangles = bytes[STL_HEADER..].chunks_exact(STL_TRIANGLE);
     for (index, triangle) in triangles.take(promised).enumerate() {
-        // The normal, three corners, two bytes of no meaning.
+        // The normal, three corners, two unused bytes.
         for corner in triangle[12..48].chunks_exact(12) {
             let number = |i: usize| {
                 let b = &corner[4 * i..4 * i + 4];
@@ -84,7 +84,7 @@ fn parse_stl(bytes: &[u8], name: &str) -> Result<Triangles, SceneError> {
     Ok((vertices, faces))
 }
 
-/// Three numbers, each with its place in `line`.
+/// Reads three numbers; an error points at the word in `line`.
 fn parse_vertex(words: &[&str], whole: &str, name: &str) -> Result<[f64; 3], SceneError> {
     let mut vertex = [0.0; 3];
     for (x, word) in vertex.iter_mut().zip(words) {
@@ -101,7 +101,7 @@ fn parse_vertex(words: &[&str], whole: &str, name: &str) -> Result<[f64; 3], Sce
     Ok(vertex)
 }
 
-/// An error at `word`, which is a part of `whole`.
+/// Makes an error that points at `word`, a part of `whole`.
 fn at_word(word: &str, whole: &str, name: &str, message: impl Into<String>) -> SceneError {
     let at = word.as_ptr() as usize - whole.as_ptr() as usize;
     SceneError::at(name, whole, at, at + word.len(), message)
@@ -170,19 +170,19 @@ fn parse_obj(text: &str, name: &str) -> Result<Triangles, SceneError> {
                     .iter()
                     .map(|word| corner(word, vertices.len(), text, name))
                     .collect::<Result<Vec<u32>, _>>()?;
-                // A fan; faces with more corners are taken to be flat and convex.
+                // A fan of triangles: faces with more corners are taken to be flat and convex.
                 for pair in corners[1..].windows(2) {
                     faces.push([corners[0], pair[0], pair[1]]);
                 }
             }
-            // Normals, textures, groups, materials.
+            // Normals, textures, groups and materials are skipped.
             _ => {}
         }
     }
     Ok((vertices, faces))
 }
 
-/// A face's corner, "3", "3/1/2" or "-1": the number of its vertex from 0.
+/// Reads a corner of a face, "3", "3/1/2" or "-1": the number of its vertex, counted from 0.
 fn corner(word: &str, vertices: usize, text: &str, name: &str) -> Result<u32, SceneError> {
     let number = word.split('/').next().and_then(|n| n.parse::<i64>().ok());
     let index = match number {
@@ -206,7 +206,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A tetrahedron with a corner at 0 and unit edges along the axes.
+    /// A tetrahedron with a corner at 0 and edges of length 1 along the axes.
     const OBJ: &str = "# a corner\nv 0 0 0\nv 1 0 0 # x\nv 0 1 0\nv 0 0 1\nvn 0 0 1\n\
         f 1 3 2\nf 1/1/1 2/2/2 4/3/3\nf -4 -1 -2\nf 2//1 3//1 4//1\n";
 

@@ -1,8 +1,8 @@
 //! NumPy's array files: `.npz` (a zip of `.npy`) and `.npy` alone.
 //!
-//! They are what frames are written as and what particle lists may come in. The reader believes nothing: a cut
-//! file, a header that lies, a shape whose product overflows are errors that name the file and the array, and
-//! memory grows with the bytes that are there, not with those that a header promises.
+//! Frames are written in this format, and particle lists may be read from it. The reader trusts nothing: a cut file,
+//! a header that contradicts the data, or a shape whose product overflows is an error that names the file and the
+//! array. Memory grows with the bytes that are there, not with those that a header promises.
 //!
 //! ```text
 //! x.npy:  \x93NUMPY  major minor  length of header  {'descr': '<f4', 'fortran_order': False, 'shape': (n, 3), }  numbers
@@ -21,23 +21,23 @@ use zip::{CompressionMethod, ZipArchive, ZipWriter};
 /// One array of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NpzArray {
-    /// Its name in the archive, without `.npy`; empty for a lone `.npy` file.
+    /// The name in the archive, without `.npy`; empty for a lone `.npy` file.
     pub name: String,
-    /// Its extents, slowest first; empty for a single number.
+    /// The extents, slowest first; empty for a single number.
     pub shape: Vec<usize>,
-    /// Its numbers, row by row. `f4` and `f8` keep their precision; whole numbers and booleans become `u32`, or
-    /// `f64` when one of them does not fit.
+    /// The numbers, row by row. `f4` and `f8` keep their precision; whole numbers and booleans become `u32`, or
+    /// `f64` if one of them does not fit.
     pub data: Data,
 }
 
-/// A file that is not what NumPy writes, or cannot be read.
+/// The error of a file that NumPy could not have written, or that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NpzError {
     /// The file.
     pub path: PathBuf,
-    /// The array in it, if it came to that.
+    /// The array, if the error concerns one.
     pub array: Option<String>,
-    /// What is wrong.
+    /// The fault.
     pub what: String,
 }
 
@@ -53,25 +53,25 @@ impl fmt::Display for NpzError {
 
 impl std::error::Error for NpzError {}
 
-/// More bytes of numbers than this in one file are refused, unless [`read_limited`] says otherwise: a zip of
-/// megabytes can unfold to as much.
+/// Largest number of bytes of numbers in one file, unless [`read_limited`] sets another: a zip of megabytes can
+/// unpack to that many.
 pub const MAX_BYTES: u64 = 16 << 30;
 
-/// Longest `.npy` header that is looked at \[bytes\]; NumPy's own are under 200.
+/// Longest `.npy` header that is read \[bytes\]; NumPy's own are under 200.
 const MAX_HEADER: u32 = 1 << 16;
 
 /// Numbers are decoded through a buffer of this size \[bytes\], a multiple of every item size.
 const CHUNK: usize = 1 << 16;
 
-/// All arrays of an `.npz` file, in the order of the file; entries that are not arrays are passed over.
+/// Reads all arrays of an `.npz` file, in the order of the file. Entries that are not arrays are skipped.
 ///
 /// # Errors
-/// Names the file, the array and what is wrong with it.
+/// The file, the array, and its fault.
 pub fn read(path: impl AsRef<Path>) -> Result<Vec<NpzArray>, NpzError> {
     read_limited(path, MAX_BYTES)
 }
 
-/// [`read`], refusing files with more than `limit` bytes of numbers.
+/// [`read`] with an error for files with more than `limit` bytes of numbers.
 ///
 /// # Errors
 /// As [`read`].
@@ -86,7 +86,7 @@ pub fn read_limited(path: impl AsRef<Path>, limit: u64) -> Result<Vec<NpzArray>,
     read_from(BufReader::new(file), limit).map_err(|(array, what)| fail(array, what))
 }
 
-/// The one array of an `.npy` file.
+/// Reads the one array of an `.npy` file.
 ///
 /// # Errors
 /// As [`read`].
@@ -102,10 +102,10 @@ pub fn read_npy(path: impl AsRef<Path>) -> Result<NpzArray, NpzError> {
     read_array(&mut BufReader::new(file), String::new(), &mut left).map_err(fail)
 }
 
-/// [`read_npy`] from anything.
+/// [`read_npy`] from a reader.
 ///
 /// # Errors
-/// What is wrong.
+/// The fault.
 pub(crate) fn read_array_from(mut reader: impl Read) -> Result<NpzArray, String> {
     let mut left = MAX_BYTES;
     read_array(&mut reader, String::new(), &mut left)
@@ -114,7 +114,7 @@ pub(crate) fn read_array_from(mut reader: impl Read) -> Result<NpzArray, String>
 /// [`read_limited`] from a reader.
 ///
 /// # Errors
-/// The array, and what is wrong with it.
+/// The array, and its fault.
 pub(crate) fn read_from<R: Read + Seek>(
     reader: R,
     limit: u64,
@@ -147,7 +147,7 @@ pub(crate) fn read_from<R: Read + Seek>(
     Ok(arrays)
 }
 
-/// What a number is made of.
+/// The kind of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
     Float,
@@ -155,7 +155,7 @@ enum Kind {
     Unsigned,
 }
 
-/// What an `.npy` header says.
+/// The content of an `.npy` header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Header {
     kind: Kind,
@@ -165,7 +165,7 @@ struct Header {
     shape: Vec<usize>,
 }
 
-/// Header and numbers of one array, to the end of `reader`; `left` bytes may still be read.
+/// Reads the header and numbers of one array, to the end of `reader`. `left` bytes may still be read.
 fn read_array(reader: &mut impl Read, name: String, left: &mut u64) -> Result<NpzArray, String> {
     let header = read_header(reader)?;
     let count = header
@@ -224,13 +224,13 @@ fn read_array(reader: &mut impl Read, name: String, left: &mut u64) -> Result<Np
     })
 }
 
-/// Numbers on their way from bytes to [`Data`].
+/// Decoded numbers, before they become [`Data`].
 enum Decoded {
     F32(Vec<f32>),
     F64(Vec<f64>),
     /// Whole numbers, as long as all fit.
     U32(Vec<u32>),
-    /// Whole numbers, once one did not.
+    /// Whole numbers, of which one does not fit.
     Whole(Vec<f64>),
 }
 
@@ -247,7 +247,7 @@ impl Decoded {
     }
 
     fn push(&mut self, bytes: &[u8], header: &Header) -> Result<(), String> {
-        // Little-endian bytes of one number, whatever the file has.
+        // Little-endian bytes of one number, whatever order the file has.
         let item = |bytes: &[u8]| {
             let mut wide = [0_u8; 8];
             wide[..bytes.len()].copy_from_slice(bytes);
@@ -306,7 +306,7 @@ impl Decoded {
     }
 }
 
-/// Fortran's order (first index fastest) to ours (last index fastest).
+/// Reorders numbers from Fortran's order (first index fastest) to ours (last index fastest).
 fn by_rows(data: &Data, shape: &[usize]) -> Data {
     fn reorder<T: Copy>(v: &[T], shape: &[usize]) -> Vec<T> {
         let mut stride = 1;
@@ -379,7 +379,7 @@ fn read_header(reader: &mut impl Read) -> Result<Header, String> {
     parse_header(&text)
 }
 
-/// `{'descr': '<f4', 'fortran_order': False, 'shape': (3, 2), }`, keys in any order.
+/// Reads `{'descr': '<f4', 'fortran_order': False, 'shape': (3, 2), }`, with the keys in any order.
 fn parse_header(text: &str) -> Result<Header, String> {
     let broken = || format!("its header is not understood: {}", text.trim());
     let mut rest = text.trim();
@@ -470,23 +470,23 @@ fn parse_header(text: &str) -> Result<Header, String> {
     })
 }
 
-/// A quoted word at the start of `text`, and what follows it.
+/// Returns the quoted word at the start of `text`, and the text after it.
 fn quoted(text: &str) -> Option<(&str, &str)> {
     let mark = text.chars().next().filter(|c| matches!(c, '\'' | '"'))?;
     text[1..].split_once(mark)
 }
 
-/// How arrays are kept in the archive.
+/// The compression of arrays in an archive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compression {
-    /// As they are: fastest, and readable without unpacking.
+    /// None: fastest, and readable without unpacking.
     #[default]
     Stored,
-    /// Deflated lightly.
+    /// Deflate at a low level.
     Deflated,
 }
 
-/// Writes an `.npz`, array after array. The same arrays give the same bytes: no time is recorded.
+/// Writes an `.npz` file, array after array. The same arrays give the same bytes: no time is recorded.
 ///
 /// ```
 /// use lahar_scene::npz::{Compression, NpzWriter};
@@ -503,7 +503,7 @@ pub struct NpzWriter<W: Write + Seek> {
 }
 
 impl NpzWriter<BufWriter<File>> {
-    /// Creates (or empties) the file at `path`.
+    /// Creates the file at `path`, or empties it.
     ///
     /// # Errors
     /// If it cannot be created.
@@ -561,7 +561,7 @@ impl<W: Write + Seek> NpzWriter<W> {
         }
     }
 
-    /// Writes the archive's directory and gives the writer back, flushed.
+    /// Writes the directory of the archive and returns the flushed writer.
     ///
     /// # Errors
     /// If writing fails.
@@ -572,13 +572,14 @@ impl<W: Write + Seek> NpzWriter<W> {
     }
 }
 
-/// Arrays from here on need the zip format's 64-bit sizes; a margin for what deflate may add \[bytes\].
+/// Arrays of this size or more need the 64-bit sizes of the zip format \[bytes\], with a margin for deflate.
 const LARGE_FILE: u64 = 0xFF00_0000;
 
-/// Floats hardly shrink further at higher levels, and take several times as long.
+/// Level of deflate. Floats hardly shrink further at higher levels, and take several times as long.
 const DEFLATE_LEVEL: i64 = 1;
 
-/// NumPy's own layout: version 1.0, the whole padded with spaces to a multiple of 64 bytes, ending in a new line.
+/// Returns a header in NumPy's own layout: version 1.0, padded with spaces to a multiple of 64 bytes, with a new line
+/// at the end.
 fn header_bytes(descr: &str, shape: &[usize]) -> Vec<u8> {
     let extents: String = match shape {
         [one] => format!("{one},"),
@@ -646,7 +647,7 @@ mod tests {
         }
     }
 
-    /// An `.npy` with this header and these bytes of numbers.
+    /// Makes an `.npy` file with this header and these bytes of numbers.
     fn npy(header: &str, numbers: &[u8]) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
         bytes.extend_from_slice(&[1, 0]);
@@ -704,7 +705,7 @@ mod tests {
         for position in 0..bytes.len() {
             let mut altered = bytes.clone();
             altered[position] ^= 0x55;
-            // Names, dates and flags are not under a checksum; numbers are.
+            // The checksum covers numbers, not names, dates and flags.
             if let Ok(arrays) = read_bytes(&altered) {
                 for one in arrays {
                     let found = samples().into_iter().any(|sample| sample.data == one.data);

@@ -1,4 +1,4 @@
-//! Lists of particles to start from: comma-separated text, or NumPy's .npz.
+//! Particle lists, from which bodies start: comma-separated text, or NumPy's `.npz`. (PLY is in [`crate::ply`].)
 
 #[cfg(feature = "npz")]
 mod arrays;
@@ -9,7 +9,7 @@ pub(crate) use arrays::{from_arrays, read_npz};
 use crate::error::{SceneError, nearest};
 use crate::text::{AXES, Lines, shorten};
 
-/// Columns of a list, one entry a particle; what the file does not have is empty.
+/// A list of particles: columns with one entry per particle. Columns that the file does not have are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParticleList<const D: usize> {
     /// Positions \[m\].
@@ -20,17 +20,17 @@ pub struct ParticleList<const D: usize> {
     pub volume: Vec<f64>,
     /// Masses \[kg\].
     pub mass: Vec<f64>,
-    /// J = V/V⁰.
+    /// The Jacobians J = V/V⁰.
     pub jacobian: Vec<f64>,
-    /// F, row by row.
+    /// The deformation gradients F, row by row.
     pub deformation_gradient: Vec<[[f64; D]; D]>,
-    /// C \[1/s\], row by row.
+    /// The affine velocity matrices C \[1/s\], row by row.
     pub affine: Vec<[[f64; D]; D]>,
-    /// What is odd about the file.
+    /// Warnings about the file.
     pub warnings: Vec<String>,
 }
 
-/// What a column of a text file holds.
+/// The quantity of a column of a text file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Column {
     Position(usize),
@@ -43,13 +43,13 @@ pub(crate) enum Column {
 }
 
 impl Column {
-    /// Whether zero and negative numbers make no sense in it.
+    /// Returns true if the quantity must be above 0.
     fn is_positive(self) -> bool {
         matches!(self, Self::Volume | Self::Mass | Self::Jacobian)
     }
 }
 
-/// Every column that a file may have, by its name.
+/// Returns every column that a file may have, with its name.
 pub(crate) fn known_columns<const D: usize>() -> Vec<(String, Column)> {
     let mut known = Vec::new();
     known.extend((0..D).map(|i| (AXES[i].to_owned(), Column::Position(i))));
@@ -68,11 +68,18 @@ pub(crate) fn known_columns<const D: usize>() -> Vec<(String, Column)> {
     known
 }
 
-/// Reads comma-separated text with a header line; lines that begin with `#` and empty lines are
-/// skipped. `name` is the file's, for messages.
+/// Reads comma-separated text with a header line. Empty lines and lines that begin with `#` are skipped.
+/// `name` is the file's, for messages.
+///
+/// ```
+/// let text = "x,y,volume\n0.1,0.2,1e-4\n0.3,0.2,1e-4\n";
+/// let list = lahar_scene::particle_list::parse_csv::<2>(text, "two.csv")?;
+/// assert_eq!(list.position, [[0.1, 0.2], [0.3, 0.2]]);
+/// # Ok::<(), lahar_scene::error::SceneError>(())
+/// ```
 ///
 /// # Errors
-/// The first line that is not what the header says.
+/// The first line that disagrees with the header, or a value that particles cannot have.
 pub fn parse_csv<const D: usize>(text: &str, name: &str) -> Result<ParticleList<D>, SceneError> {
     let mut lines =
         Lines { text, at: 0 }.filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
@@ -172,7 +179,7 @@ fn parse_header<const D: usize>(
     Ok(columns)
 }
 
-/// A number of a text file, if a particle can have it in `column`.
+/// Reads a number that a particle can have in `column`.
 pub(crate) fn parse_number(field: &str, column: Column) -> Result<f64, String> {
     match field.parse::<f64>() {
         Ok(number) => check_number(number, column),
@@ -180,7 +187,7 @@ pub(crate) fn parse_number(field: &str, column: Column) -> Result<f64, String> {
     }
 }
 
-/// The number, if a particle can have it in `column`.
+/// Returns the number, if a particle can have it in `column`.
 pub(crate) fn check_number(number: f64, column: Column) -> Result<f64, String> {
     if !number.is_finite() {
         return Err(format!("{number} is no value for a particle"));
@@ -192,7 +199,7 @@ pub(crate) fn check_number(number: f64, column: Column) -> Result<f64, String> {
 }
 
 impl<const D: usize> ParticleList<D> {
-    /// Adds a particle with these values in these columns.
+    /// Adds a particle with one value per column.
     pub(crate) fn add(&mut self, columns: &[Column], values: &[f64]) {
         let mut position = [0.0; D];
         let mut velocity = None;
@@ -216,7 +223,7 @@ impl<const D: usize> ParticleList<D> {
     }
 }
 
-/// Whether the columns of a file go together: positions are there, vectors and matrices are whole.
+/// Checks the columns of a file: positions must be there, and vectors and matrices must be complete.
 pub(crate) fn check_columns<const D: usize>(columns: &[Column]) -> Result<(), String> {
     let group = |column: &Column| match column {
         Column::Position(_) => 1,
@@ -239,7 +246,7 @@ pub(crate) fn check_columns<const D: usize>(columns: &[Column]) -> Result<(), St
     Ok(())
 }
 
-/// Fields of a line with the byte they start at, trimmed.
+/// Returns the fields of a line, trimmed, each with the byte at which it starts.
 fn fields(start: usize, line: &str) -> impl Iterator<Item = (usize, &str)> {
     let mut at = start;
     line.split(',').map(move |field| {

@@ -1,7 +1,7 @@
 //! Particles from PLY files: text, or binary of either byte order.
 //!
-//! The element `vertex` holds the particles. Properties that lahar knows are read, by the names of a
-//! csv file's columns; others (colours, normals, lists) are passed over, and so is `z` in 2D.
+//! The particles are the elements `vertex`. Properties with the names of columns of a CSV particle list are
+//! read; others (colors, normals, lists) are skipped, and so is `z` in 2D.
 
 use crate::error::SceneError;
 use crate::particle_list::{
@@ -16,7 +16,7 @@ enum Format {
     BigEndian,
 }
 
-/// Types of numbers, by both of their names.
+/// Types of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Type {
     I8,
@@ -55,7 +55,7 @@ impl Type {
         }
     }
 
-    /// The number that `bytes`, as many as it has, spell.
+    /// Decodes a number from its bytes.
     fn read(self, bytes: &[u8], format: Format) -> f64 {
         let mut little = [0; 8];
         let n = self.bytes();
@@ -80,7 +80,7 @@ impl Type {
 #[derive(Clone, Debug)]
 struct Property {
     name: String,
-    /// Of a list: the type of its length.
+    /// The type of the length, for a list.
     length: Option<Type>,
     kind: Type,
 }
@@ -95,17 +95,24 @@ struct Element {
 struct Header {
     format: Format,
     elements: Vec<Element>,
-    /// Where the numbers begin.
+    /// The byte at which the numbers begin.
     body: usize,
 }
 
 /// Longest header \[bytes\].
 const LONGEST_HEADER: usize = 1 << 20;
 
-/// Reads the particles of a PLY file; `name` is the file's, for messages.
+/// Reads the particles of a PLY file. `name` is the file's, for messages.
+///
+/// ```
+/// let file = b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0.5 0.25\n";
+/// let list = lahar_scene::ply::parse_ply::<2>(file, "one.ply")?;
+/// assert_eq!(list.position, [[0.5, 0.25]]);
+/// # Ok::<(), lahar_scene::error::SceneError>(())
+/// ```
 ///
 /// # Errors
-/// The first thing that is not as the header says, or that particles cannot have.
+/// The first part that disagrees with the header, or a value that particles cannot have.
 pub fn parse_ply<const D: usize>(bytes: &[u8], name: &str) -> Result<ParticleList<D>, SceneError> {
     let header = parse_header(bytes, name)?;
     let fail = |message: String| SceneError::of_file(name, message);
@@ -131,7 +138,7 @@ pub fn parse_ply<const D: usize>(bytes: &[u8], name: &str) -> Result<ParticleLis
     };
     let mut columns: Vec<Option<Column>> = vertex.properties.iter().map(column).collect();
     if columns.contains(&Some(Column::Gradient(0, 0))) {
-        // Frames have both; F says more.
+        // Frames have both J and F. F carries more.
         for column in &mut columns {
             column.take_if(|column| *column == Column::Jacobian);
         }
@@ -158,7 +165,7 @@ pub fn parse_ply<const D: usize>(bytes: &[u8], name: &str) -> Result<ParticleLis
     Ok(list)
 }
 
-/// The number of the vertex element, it, what its properties are, and those that are known.
+/// Index of the vertex element, the element, the column of each property, and the columns that are known.
 type Wanted<'a> = (usize, &'a Element, &'a [Option<Column>], &'a [Column]);
 
 fn read_text<const D: usize>(
@@ -249,7 +256,7 @@ fn read_binary<const D: usize>(
     Ok(())
 }
 
-/// Takes a property's number, or a list, from `rest`; `None`: there is not enough.
+/// Takes the number of a property, or a list, from `rest`; `None` if there are too few bytes.
 fn take(rest: &mut &[u8], property: &Property, format: Format) -> Option<f64> {
     let mut one = |kind: Type| {
         let (number, behind) = rest.split_at_checked(kind.bytes())?;
@@ -265,7 +272,7 @@ fn take(rest: &mut &[u8], property: &Property, format: Format) -> Option<f64> {
     Some(items)
 }
 
-/// An error about a file that ends too soon.
+/// Makes the error of a file that ends too soon.
 fn cut(name: &str, element: &Element, row: u64) -> SceneError {
     let message = format!(
         "the header promises {} of \"{}\", the file ends after {row}",
@@ -374,7 +381,7 @@ mod tests {
         format!("{HEADER}0.5\n1 2 255 0 3 4 0.5\n-1 -2 0 2 7 8 -3 -4 0.25\n")
     }
 
-    /// The same in bytes.
+    /// The same file in binary.
     fn binary(format: &str) -> Vec<u8> {
         let mut bytes = HEADER.replace("ascii", format).into_bytes();
         let little = format.contains("little");

@@ -1,23 +1,23 @@
-//! The nodes around a shape, and where among them a place is.
+//! The nodes around a shape, and the base node of a point among them.
 
 use lahar::geometry::Bounds;
 use lahar::kernel::BSpline;
 use lahar::math::Real;
 
-/// Which nodes.
+/// A lattice of nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Lattice {
-    /// The grid's own.
+    /// The nodes of the grid.
     Grid,
-    /// Those half a cell further along every axis.
+    /// The middles of the cells: nodes half a cell further along every axis.
     Between,
 }
 
 impl Lattice {
     pub(super) const BOTH: [Self; 2] = [Self::Grid, Self::Between];
 
-    /// The base node in this lattice, and how far past it, of what is `frac` past the node `base` of the
-    /// grid, on one axis.
+    /// Returns the base node in this lattice along one axis and the distance from it \[cells\], of a point that
+    /// is `frac` cells past the node `base` of the grid.
     #[inline(always)]
     pub(super) fn base<R: Real + PartialOrd>(self, base: usize, frac: R) -> (usize, R) {
         let half = frac.lit(0.5);
@@ -29,10 +29,10 @@ impl Lattice {
     }
 }
 
-/// The nodes that particles in a box can touch, the first axis fastest. Both lattices number theirs
-/// alike.
+/// The nodes that particles in a box can touch, numbered with the first axis fastest. Both lattices have the
+/// same numbers.
 pub(super) struct Nodes<const D: usize> {
-    /// Where the first of them is \[m\].
+    /// Position of the first node \[m\].
     first: [f64; D],
     size: [usize; D],
     dx: f64,
@@ -40,7 +40,7 @@ pub(super) struct Nodes<const D: usize> {
 
 impl<const D: usize> Nodes<D> {
     pub(super) fn around(bounds: &Bounds<D>, origin: [f64; D], dx: f64) -> Self {
-        /// Nodes beyond a cell that its particles may touch, weights of 0 included.
+        /// Nodes beyond a cell that its particles may touch, including those with a weight of 0.
         const REACH: f64 = 3.0;
         let low: [f64; D] =
             core::array::from_fn(|axis| ((bounds.min[axis] - origin[axis]) / dx).floor() - REACH);
@@ -62,7 +62,7 @@ impl<const D: usize> Nodes<D> {
         self.size.iter().product()
     }
 
-    /// Nodes on the axes below `axis`: what is between one and the next along it.
+    /// Returns the difference between the numbers of neighbors along `axis`.
     pub(super) fn stride(&self, axis: usize) -> usize {
         self.size[..axis].iter().product()
     }
@@ -71,8 +71,8 @@ impl<const D: usize> Nodes<D> {
         self.size[axis]
     }
 
-    /// On one axis, the base node of a place \[m\] and how far past it \[cells\], as [`lahar::kernel`] has
-    /// them.
+    /// Returns the base node of a coordinate \[m\] along one axis, and the distance from it \[cells\], as in
+    /// [`lahar::kernel`].
     #[inline(always)]
     pub(super) fn base<K: BSpline>(&self, axis: usize, x: f64) -> (usize, f64) {
         let cells = (x - self.first[axis]) / self.dx - K::OFFSET;

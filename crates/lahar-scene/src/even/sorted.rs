@@ -1,47 +1,45 @@
-//! Particles in the order of the nodes that they touch, so that threads can add to slabs of nodes apart
-//! from each other.
+//! Particles sorted by the nodes that they touch, so that threads can add to separate slabs of nodes.
 //!
 //! ```text
-//! planes of nodes along the last axis, SLAB = 4
+//! layers of nodes along the last axis, SLAB = 4
 //!  0 1 2 3 4 5 6 7 8 9 ...
-//! [first  ]. . .              a slab's particles have their base nodes in it, and reach three planes on:
-//!                 [third  ]   so every other slab can be filled at the same time, and then those between
+//! [first  ]. . .              particles of a slab have their base nodes in it, and reach three layers further:
+//!                 [third  ]   every other slab can be filled at the same time, then the slabs between
 //! ```
 
 use super::nodes::{Lattice, Nodes};
 use crate::parallel::*;
 use lahar::kernel::{BSpline, STENCIL};
 
-/// Planes of nodes in a slab: at least as many as kernels reach beyond it.
+/// Layers of nodes in a slab: at least as many as kernels reach beyond it.
 const SLAB: usize = 4;
 
-/// Particles that a thread looks at at a time.
+/// Particles that a thread takes at a time.
 const CHUNK: usize = 1 << 13;
 
-/// The most that a round changes a volume by, as a factor: a hole that no particle reaches is not to be
-/// filled by its neighbours.
-const MOST: f32 = 2.0;
+/// Largest factor by which a round changes a volume. Particles beside a hole must not fill it alone.
+const LARGEST_CHANGE: f32 = 2.0;
 
-/// How much further than the ratio asks a volume goes: particles share what is wrong at a node with others,
-/// so that all together go too short a way. At 2.5 they go too far, and it grows.
-const FURTHER: f32 = 1.5;
+/// Factor on the correction of a volume. Particles share the error at a node with others, so that a factor of
+/// 1 corrects too little; at 2.5 the error grows.
+const OVER_RELAXATION: f32 = 1.5;
 
 /// A particle among the nodes of the grid.
 #[derive(Clone, Copy)]
 struct Placed<const D: usize> {
-    /// The number of its base node.
+    /// Number of its base node.
     base: u32,
-    /// How far it is past that \[cells\].
+    /// Distance from the base node along each axis \[cells\].
     frac: [f32; D],
 }
 
-/// Particles by halves of planes: those of one base plane in either lattice are side by side.
+/// Particles sorted by half layers, so that those of one base layer are side by side for either lattice.
 pub(super) struct Sorted<'a, const D: usize> {
     nodes: &'a Nodes<D>,
     particles: Vec<Placed<D>>,
-    /// Which of the given particles each is.
+    /// The index of each sorted particle in the given order.
     given: Vec<u32>,
-    /// Where each half of a plane begins.
+    /// The index of the first particle of each half layer.
     starts: Vec<usize>,
 }
 
@@ -90,7 +88,7 @@ impl<'a, const D: usize> Sorted<'a, D> {
         }
     }
 
-    /// Σ w V at each node of a lattice.
+    /// Returns Σ w V at each node of a lattice.
     pub(super) fn fill<K: BSpline>(&self, volume: &[f32], lattice: Lattice) -> Vec<f32> {
         let plane = self.nodes.stride(D - 1);
         let mut filled = vec![0.0; self.nodes.len()];
@@ -134,13 +132,13 @@ impl<'a, const D: usize> Sorted<'a, D> {
                     }
                 });
                 let factor: f32 = sums.iter().sum();
-                let factor = 1.0 + FURTHER * (factor - 1.0);
-                *volume *= factor.clamp(1.0 / MOST, MOST);
+                let factor = 1.0 + OVER_RELAXATION * (factor - 1.0);
+                *volume *= factor.clamp(1.0 / LARGEST_CHANGE, LARGEST_CHANGE);
             }
         });
     }
 
-    /// `volume` in units in which it adds up to `whole`, in the order in which particles were given.
+    /// Returns the volumes in the given order of particles, scaled so that they add up to `whole`.
     pub(super) fn in_given_order(&self, volume: &[f32], whole: f64) -> Vec<f64> {
         let sum: f64 = volume.iter().map(|volume| f64::from(*volume)).sum();
         let mut result = vec![0.0; volume.len()];
@@ -150,14 +148,14 @@ impl<'a, const D: usize> Sorted<'a, D> {
         result
     }
 
-    /// Particles with their base nodes in the planes `low..high` of a lattice.
+    /// Returns the particles with base nodes in the layers `low..high` of a lattice.
     fn rows_between(&self, low: usize, high: usize, lattice: Lattice) -> core::ops::Range<usize> {
         let shift = usize::from(lattice == Lattice::Between);
         let start = |plane: usize| self.starts[(2 * plane + shift).min(self.starts.len() - 1)];
         start(low)..start(high)
     }
 
-    /// The base node of a particle, and its rows of nodes.
+    /// Returns the base node of a particle, and its rows of nodes.
     #[inline(always)]
     fn rows<K: BSpline>(&self, particle: &Placed<D>, lattice: Lattice) -> (usize, Rows<D>) {
         let mut base = particle.base as usize;
@@ -186,8 +184,8 @@ struct Rows<const D: usize> {
 }
 
 impl<const D: usize> Rows<D> {
-    /// Calls `f(offset, weight, along)` for each row: where it is from the base node, its weight by the
-    /// other axes, and those along it.
+    /// Calls `f(offset, weight, along)` for each row: its offset from the base node, its weight by the other
+    /// axes, and the weights along it.
     #[inline(always)]
     fn for_each(&self, mut f: impl FnMut(usize, f32, &[f32; STENCIL])) {
         let along = &self.weights[0];

@@ -10,7 +10,7 @@ use std::io::{BufReader, Read, Seek};
 /// skipped. The arrays may take `limit` bytes together. `name` is the file's, for messages.
 ///
 /// # Errors
-/// The array that is missing, of another shape, or has a value that particles cannot have.
+/// The array that is missing, has another shape, or has a value that particles cannot have.
 pub(crate) fn read_npz<const D: usize>(
     name: &str,
     content: impl Read + Seek,
@@ -25,10 +25,10 @@ pub(crate) fn read_npz<const D: usize>(
     from_arrays(&arrays).map_err(fail)
 }
 
-/// The list that the arrays of a frame make.
+/// Makes a list of the arrays of a frame.
 ///
 /// # Errors
-/// The array that is missing, of another shape, or has a value that particles cannot have.
+/// The array that is missing, has another shape, or has a value that particles cannot have.
 pub(crate) fn from_arrays<const D: usize>(arrays: &[NpzArray]) -> Result<ParticleList<D>, String> {
     let Some(position) = arrays.iter().find(|array| array.name == "position") else {
         let names: Vec<&str> = arrays.iter().map(|array| array.name.as_str()).collect();
@@ -38,7 +38,7 @@ pub(crate) fn from_arrays<const D: usize>(arrays: &[NpzArray]) -> Result<Particl
         ));
     };
     let count = position.shape.first().copied().unwrap_or(0);
-    // The numbers of an array of `width` numbers a particle; none if it is not there.
+    // The numbers of an array with this shape per particle; `None` if there is no such array.
     let numbers =
         |name: &str, shape: &[usize], positive: bool| -> Result<Option<Vec<f64>>, String> {
             let Some(array) = arrays.iter().find(|array| array.name == name) else {

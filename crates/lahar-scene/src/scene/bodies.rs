@@ -1,7 +1,7 @@
 //! Reads bodies: their shape or particle list, their material and their motion at the start.
 
 use super::files::Files;
-use super::formula::Of;
+use super::formula::Variables;
 use super::plan::{Body, Source, StartPressure, Volume};
 use super::read::Reader;
 use super::shapes::{LARGEST_PART_COUNT, read_shape};
@@ -51,7 +51,7 @@ pub(super) fn read_body<const D: usize>(
         name,
         material,
         source,
-        velocity: table.formulas("velocity", Of::Place)?,
+        velocity: table.formulas("velocity", Variables::Place)?,
         velocity_spread: table.opt_vector("velocity_spread").unwrap_or([0.0; D]),
         gradient: read_velocity_gradient(table)?,
         volume,

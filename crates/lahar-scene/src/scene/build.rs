@@ -1,4 +1,4 @@
-//! From a plan to a simulation with its particles.
+//! From a plan to the setup of a simulation, and the particles of bodies at rest.
 
 use super::forces::lattice;
 use super::plan::{Body, Plan, Source, Volume};
@@ -10,7 +10,7 @@ use lahar::material::Fluid;
 use lahar::{Collider, Deformation, Model, ParticleBatch, Setup};
 
 impl<const D: usize> Plan<D> {
-    /// What the simulator is made from.
+    /// Returns the setup of the simulation.
     pub(crate) fn setup(&self, isa: lahar::Isa) -> Setup<D> {
         Setup {
             dx: self.dx,
@@ -30,9 +30,9 @@ impl<const D: usize> Plan<D> {
         }
     }
 
-    /// The particles of every body, without the motion that it gives them ([`InMotion`]); bodies are numbered
-    /// in the order of the scene. Where colliders are, none are made: with how many were left out of each.
-    /// What of a list is there is added to `warnings`.
+    /// Returns the particles of every body in the order of the scene, without their motion, which
+    /// [`InMotion`](super::motion::InMotion) adds; and how many particles of each body were left out because
+    /// they would be inside colliders. Particles of lists inside colliders are kept, with a warning.
     pub(crate) fn batches(
         &self,
         seed: u64,
@@ -61,10 +61,10 @@ impl<const D: usize> Plan<D> {
             .unzip()
     }
 
-    /// Bodies' expected particles, in order; about, where colliders take some of a body's space.
+    /// Returns the expected number of particles of each body: an estimate where colliders take some of its space.
     pub(crate) fn expected_particles(&self) -> Vec<f64> {
         let inside = Inside(self.colliders.iter().map(|c| (c, c.at(0.0))).collect());
-        // Places along an axis of a body that are looked at.
+        // Points along an axis of a body that are tested.
         let places = if D == 2 { 200 } else { 40 };
         let free = |body: &Body<D>| match &body.source {
             Source::Shape { region, .. } if !self.colliders.is_empty() => {
@@ -84,7 +84,7 @@ impl<const D: usize> Plan<D> {
             .collect()
     }
 
-    /// Bodies that share space: (first, second, particles of the second inside the first).
+    /// Returns the pairs of bodies that share space: (first, second, particles of the second inside the first).
     pub(crate) fn overlaps(&self, batches: &[ParticleBatch<D>]) -> Vec<(usize, usize, usize)> {
         let mut found = Vec::new();
         for (i, body) in self.bodies.iter().enumerate() {
@@ -106,7 +106,7 @@ impl<const D: usize> Plan<D> {
         found
     }
 
-    /// The particles of a body, and how many were left out where colliders are.
+    /// Returns the particles of a body, and how many were left out because they would be inside colliders.
     fn batch(
         &self,
         body: &Body<D>,
@@ -180,8 +180,8 @@ impl<const D: usize> Plan<D> {
     }
 }
 
-/// Compresses the particles as a body at rest is by its own weight, with a free surface where its
-/// highest point is: J by depth, and rest volumes so much larger than the room they take.
+/// Compresses the particles as the weight of a body at rest does, with a free surface at its highest point:
+/// J follows from the depth, and rest volumes grow by 1/J, so that the particles still fill the body.
 fn put_under_pressure<const D: usize>(
     batch: &mut ParticleBatch<D>,
     body: &Body<D>,
@@ -216,18 +216,18 @@ fn put_under_pressure<const D: usize>(
     batch.deformation = Deformation::Jacobian(jacobian);
 }
 
-/// The colliders at the start.
+/// The colliders at time 0.
 struct Inside<'a, const D: usize>(Vec<(&'a Collider<D>, Placed<D>)>);
 
 impl<const D: usize> Inside<'_, D> {
-    /// The first collider that `x` is in.
+    /// Returns the name of the first collider that `x` is inside of.
     fn of(&self, x: &[f64; D]) -> Option<&str> {
         let all = self.0.iter();
         let found = all.filter(|(_, placed)| placed.distance(*x).0 < 0.0);
         found.map(|(collider, _)| collider.name.as_str()).next()
     }
 
-    /// How many of `positions` are in colliders, and in which: None in none.
+    /// Returns how many of `positions` are inside colliders, and the names of these colliders; `None` if none are.
     fn count(&self, positions: &[[f64; D]]) -> Option<(usize, String)> {
         let found: Vec<&str> = positions.iter().filter_map(|x| self.of(x)).collect();
         let names = self.0.iter().map(|(collider, _)| &collider.name);

@@ -2,7 +2,7 @@
 //! here, and what is absent and has a default is filled in.
 
 use super::document::{Entry, Node, Sources, Span, Table, Value, literal, literal_table};
-use super::formula::Of;
+use super::formula::Variables;
 use super::formula::read_formula;
 use super::key::{Key, Kind, Section, WhenAbsent, color};
 use super::keys::{SCENE, sections};
@@ -220,7 +220,9 @@ impl Check<'_> {
             (Kind::Vector, Value::List(list)) => {
                 self.numbers(list, span, name, kind, self.dimension, true)
             }
-            (Kind::Formulas(of), Value::List(list)) => self.formulas(list, span, name, of),
+            (Kind::Formulas(variables), Value::List(list)) => {
+                self.formulas(list, span, name, variables)
+            }
             (Kind::Rotation, value) if self.dimension == 2 => match value.as_number() {
                 Some(number) if number.is_finite() => Ok(()),
                 _ => Err(wrong(value)),
@@ -318,7 +320,13 @@ impl Check<'_> {
     }
 
     /// Numbers or expressions, one a dimension.
-    fn formulas(&self, list: &[Node], span: Span, name: &str, of: Of) -> Result<(), SceneError> {
+    fn formulas(
+        &self,
+        list: &[Node],
+        span: Span,
+        name: &str,
+        variables: Variables,
+    ) -> Result<(), SceneError> {
         let is_text = |node: &&Node| matches!(node.value, Value::Text(_));
         let numbers: Vec<Node> = list
             .iter()
@@ -330,10 +338,10 @@ impl Check<'_> {
                 number
             })
             .collect();
-        let kind = Kind::Formulas(of);
+        let kind = Kind::Formulas(variables);
         self.numbers(&numbers, span, name, kind, self.dimension, true)?;
         for node in list.iter().filter(is_text) {
-            read_formula(self.sources, node, of, self.dimension)?;
+            read_formula(self.sources, node, variables, self.dimension)?;
         }
         Ok(())
     }
@@ -544,7 +552,7 @@ fn places(name: &str, here: &Section) -> Option<String> {
             .key(name)
             .is_some_and(|key| !matches!(key.kind, Kind::Later))
     };
-    // Of a material, other models tell more than tables of other things.
+    // For a material, other models tell more than tables of other things.
     let kin = |section: &&Section| {
         section.name.starts_with("material: ") && here.name.starts_with("material: ")
     };

@@ -1,4 +1,4 @@
-//! Colliders, as scenes write them.
+//! Reads colliders.
 
 use super::contact::contact_with_friction;
 use super::document::{Sources, Span, Value, from_json};
@@ -11,22 +11,22 @@ use crate::error::SceneError;
 use lahar::geometry::{Primitive, Shape};
 use lahar::{Collider, Contact, Keyframe, Motion};
 
-/// Names that sides of the domain have.
+/// Names of the sides of the domain, which colliders must not have.
 const SIDES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
 
-/// A collider, for outlets.
+/// A collider of a scene, as windows and pictures show it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColliderInfo {
-    /// Its name.
+    /// The name.
     pub name: String,
-    /// Its colour, if the scene gives it one.
+    /// The color, if the scene gives one.
     pub color: Option<[u8; 3]>,
-    /// What it is, in three dimensions: in 2D without end along z.
+    /// The collider in three dimensions. In 2D it has no end along z.
     pub collider: Collider<3>,
 }
 
 impl ColliderInfo {
-    /// What it is, in a few words.
+    /// Describes the collider in a few words.
     pub fn words(&self) -> String {
         let Collider {
             primitives,
@@ -129,7 +129,7 @@ fn read_collider<const D: usize>(
     })
 }
 
-/// The middle of the shape's bounds; a half-space's point where it has none.
+/// Returns the middle of the shape's bounds, or a point on its surface if the shape has no end.
 fn middle<const D: usize>(shape: &Shape<D>, primitives: &[Primitive<D>]) -> [f64; D] {
     let bounds = shape.bounds();
     let has_end = (0..D).all(|i| bounds.min[i].is_finite() && bounds.max[i].is_finite());
@@ -184,15 +184,15 @@ fn read_motion<const D: usize>(
     Ok(Motion::Keyframes(frames))
 }
 
-/// A number in 2D, three in 3D.
+/// Reads a rotation: one number in 2D, three in 3D.
 fn turn(table: &Reader<'_>, key: &str) -> [f64; 3] {
     table
         .opt_vector::<3>(key)
         .unwrap_or_else(|| [0.0, 0.0, table.opt_number(key).unwrap_or(0.0)])
 }
 
-/// The colliders of a scene that was read before, from what [`super::Scene::resolved`] said of it;
-/// none where it says nothing that can be understood.
+/// Returns the colliders of a scene from its record, which [`super::Scene::resolved`] has made. Returns none if
+/// the record cannot be understood.
 pub fn colliders_of(resolved: &serde_json::Value) -> Vec<ColliderInfo> {
     let sources = Sources::default();
     let Some(Value::Table(root)) = from_json(resolved).map(|node| node.value) else {
@@ -209,7 +209,7 @@ pub fn colliders_of(resolved: &serde_json::Value) -> Vec<ColliderInfo> {
     read.unwrap_or_default()
 }
 
-/// For outlets.
+/// Describes the colliders of a scene for windows and pictures.
 pub(super) fn infos<const D: usize>(
     scene: &Reader<'_>,
     colliders: &[Collider<D>],
@@ -225,7 +225,7 @@ pub(super) fn infos<const D: usize>(
         .collect()
 }
 
-/// A collider as it is in space: in 2D without end along z.
+/// Returns the collider in three dimensions. In 2D it has no end along z.
 fn in_space<const D: usize>(collider: &Collider<D>) -> Collider<3> {
     let space = |primitive: &Primitive<D>| match primitive {
         Primitive::Box { center, half, axes } => Primitive::Box {

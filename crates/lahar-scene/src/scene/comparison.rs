@@ -1,22 +1,30 @@
-//! One scene, several values of one of its keys: `transfer=pic,apic`.
+//! Comparisons of one scene with several values of one key: `transfer=pic,apic`.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// A key of a scene, as `--set` names it, and the values to set it to, one after the other.
+/// A key of a scene and the values to set it to, one simulation per value.
+///
+/// ```
+/// use lahar_scene::scene::Comparison;
+///
+/// let comparison: Comparison = "transfer=pic,apic".parse()?;
+/// assert_eq!(comparison.values, ["pic", "apic"]);
+/// # Ok::<(), String>(())
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Comparison {
-    /// Dotted, as in `materials.water.viscosity`.
+    /// The key, dotted as in `materials.water.viscosity`.
     pub key: String,
-    /// At least two different ones, in TOML; single words need no quotes.
+    /// The values in TOML, at least two and all different. Single words need no quotes.
     pub values: Vec<String>,
 }
 
 impl Comparison {
-    /// More values than this would be too small to see beside each other.
+    /// Largest number of values. More pictures side by side would be too small.
     pub const MOST: usize = 4;
 
-    /// What is laid over the scene for each of the values: `base`, and then the key.
+    /// Returns the overrides for each of the values: `base`, and then the key.
     pub fn overrides<'a>(
         &'a self,
         base: &'a [(String, String)],
@@ -28,13 +36,13 @@ impl Comparison {
         })
     }
 
-    /// What each of them is called: the value without quotes.
+    /// Returns the title of each simulation: the key, and the value without quotes.
     pub fn titles(&self) -> impl Iterator<Item = String> + '_ {
         (self.values.iter()).map(|value| format!("{} = {}", self.key, value.trim_matches('"')))
     }
 }
 
-/// As it is written on the command line.
+/// Writes the comparison as on the command line.
 impl fmt::Display for Comparison {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}={}", self.key, self.values.join(","))
@@ -44,7 +52,7 @@ impl fmt::Display for Comparison {
 impl FromStr for Comparison {
     type Err = String;
 
-    /// `KEY=A,B`: commas within brackets, braces and quotes belong to a value.
+    /// Reads `KEY=A,B`. Commas inside brackets, braces and quotes belong to a value.
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = |why: &str| format!("{why}; write it as KEY=A,B, as in transfer=pic,apic");
         let (key, rest) = text
@@ -73,7 +81,7 @@ impl FromStr for Comparison {
     }
 }
 
-/// Splits at commas outside of brackets, braces and quotes.
+/// Splits a text at commas outside of brackets, braces and quotes.
 fn split(text: &str) -> Vec<&str> {
     let mut parts = vec![];
     let (mut depth, mut quote, mut start) = (0_i32, None, 0);

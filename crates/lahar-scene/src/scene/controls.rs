@@ -1,29 +1,29 @@
-//! What a scene asks of keys and mouse in the window.
+//! Reads the controls of keys and mouse in the window.
 
 use super::read::Reader;
 use crate::error::SceneError;
 
-/// What keys and mouse do in the window.
+/// The controls of keys and mouse in the window.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Controls {
-    /// Simulated seconds a second at first, at most.
+    /// Largest speed of the simulation at first \[simulated seconds per second\].
     pub speed: f64,
-    /// Size of gravity towards a key's side \[m/s²\]; `None`: that of the scene's.
+    /// Size of gravity towards the side of a key \[m/s²\]; `None` for the size of the scene's gravity.
     pub gravity: Option<f64>,
-    /// Whether gravity acts only while a key is held.
+    /// True if gravity acts only while its key is pressed.
     pub hold: bool,
-    /// Acceleration towards the pointer or away from it \[m/s²\]; `None`: from the size of gravity.
+    /// Acceleration towards the pointer or away from it \[m/s²\]; `None` for one that follows the size of gravity.
     pub pull: Option<f64>,
-    /// How far the pointer reaches \[m\], infinite for everywhere; `None`: from the scene's size.
+    /// Reach of the pointer \[m\], infinite for everywhere; `None` for one that follows the size of the scene.
     pub reach: Option<f64>,
-    /// The length within which its acceleration goes to zero \[m\]; `None`: a cell.
+    /// Distance below which the pointer's acceleration goes to zero \[m\]; `None` for the size of a cell.
     pub softening: Option<f64>,
-    /// Particles are pushed instead of nodes attracted, by (distance/reach) to this power.
+    /// If given, the pointer pushes particles instead of attracting nodes, by (distance/reach) to this power.
     pub push: Option<f64>,
 }
 
 impl Default for Controls {
-    /// Real time, gravity that stays as it was turned, a hand made to the scene's measure.
+    /// Real time, gravity that stays after its key is released, a pointer that follows the size of the scene.
     fn default() -> Self {
         Self {
             speed: 1.0,
@@ -46,7 +46,7 @@ pub(super) fn read_controls(scene: &Reader<'_>) -> Result<Controls, SceneError> 
         gravity: keys.opt_number("strength"),
         hold: keys.opt_flag("hold").unwrap_or_default(),
         pull: pointer.opt_number("strength"),
-        // The one word that it takes is "everywhere".
+        // The only word for the radius is "everywhere".
         reach: match pointer.opt_text("radius") {
             Some(_) => Some(f64::INFINITY),
             None => pointer.opt_number("radius"),
@@ -59,7 +59,7 @@ pub(super) fn read_controls(scene: &Reader<'_>) -> Result<Controls, SceneError> 
     })
 }
 
-/// A table that the defaults have seen to.
+/// Returns a table that always is there, because it has a default.
 fn table<'a>(reader: &Reader<'a>, key: &str) -> Result<Reader<'a>, SceneError> {
     let table = reader.opt_table(key);
     table.ok_or_else(|| reader.error(format!("there is no {key}")))

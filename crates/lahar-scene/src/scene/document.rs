@@ -1,11 +1,11 @@
-//! A scene as a tree of TOML values, each with its place, so that whatever is found wrong with it
-//! later can be pointed at; and what `--set` does to the tree.
+//! A scene as a tree of TOML values. Each value carries its place, so that later errors can point at it.
+//! `--set` changes values of the tree.
 
 use crate::error::{SceneError, nearest};
 use crate::text::shorten;
 use toml::de::{DeTable, DeValue};
 
-/// Texts that values come from: the scene first, then the overrides.
+/// The texts that values come from: the scene first, then the overrides.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sources(Vec<Source>);
 
@@ -15,7 +15,7 @@ struct Source {
     text: String,
 }
 
-/// Bytes of one of the [`Sources`].
+/// A range of bytes of one of the [`Sources`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Span {
     source: usize,
@@ -24,7 +24,7 @@ pub(crate) struct Span {
 }
 
 impl Sources {
-    /// An error that points at `span`.
+    /// Makes an error that points at `span`.
     pub(crate) fn error(&self, span: Span, message: impl Into<String>) -> SceneError {
         match self.0.get(span.source) {
             Some(source) => {
@@ -34,13 +34,13 @@ impl Sources {
         }
     }
 
-    /// Whether `span` is in an override, not in the scene.
+    /// Returns true if `span` is in an override, not in the scene.
     pub(crate) fn is_override(&self, span: Span) -> bool {
         span.source > 0
     }
 
-    /// The bytes `part` of `text`, a value that stands at `span`; all of it where its spelling
-    /// differs (escapes).
+    /// Returns the span of the bytes `part` of `text`, a value at `span`. Where the value is spelled with escapes, it
+    /// returns all of `span`.
     pub(crate) fn within(&self, span: Span, text: &str, part: core::ops::Range<usize>) -> Span {
         let spelt = self
             .0
@@ -62,7 +62,7 @@ impl Sources {
     }
 }
 
-/// A value and its place.
+/// A value with its place.
 #[derive(Clone, Debug)]
 pub(crate) struct Node {
     pub(crate) value: Value,
@@ -73,17 +73,17 @@ pub(crate) struct Node {
 pub(crate) enum Value {
     Text(String),
     Number(f64),
-    /// A whole number; too large ones are [`Value::Number`].
+    /// A whole number. Numbers that do not fit are [`Value::Number`].
     Integer(i64),
     Flag(bool),
     List(Vec<Node>),
     Table(Table),
-    /// A date or a time, of no use here.
+    /// A date or a time, which no key takes.
     Date,
 }
 
 impl Value {
-    /// What it is, for messages.
+    /// Describes the value for messages.
     pub(crate) fn describe(&self) -> String {
         match self {
             Self::Text(text) => format!("the text \"{}\"", shorten(text)),
@@ -108,7 +108,7 @@ impl Value {
     }
 }
 
-/// Keys and values, in the order of the file.
+/// A table: keys and values in the order of the file.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Table {
     pub(crate) entries: Vec<Entry>,
@@ -117,7 +117,7 @@ pub(crate) struct Table {
 #[derive(Clone, Debug)]
 pub(crate) struct Entry {
     pub(crate) key: String,
-    /// Where the key stands.
+    /// The place of the key.
     pub(crate) key_span: Span,
     pub(crate) node: Node,
 }
@@ -138,7 +138,7 @@ impl Table {
             .map(|entry| &mut entry.node)
     }
 
-    /// Adds a key that is not there yet, all of it at `span`.
+    /// Adds a key that is not there yet, with `span` as the place of key and value.
     pub(crate) fn add(&mut self, key: &str, value: Value, span: Span) {
         self.entries.push(Entry {
             key: key.to_owned(),
@@ -148,7 +148,7 @@ impl Table {
     }
 }
 
-/// Keys of a body that say where the particles of its shape are.
+/// Keys of a body that place the particles of its shape.
 const OF_SHAPES: [&str; 5] = [
     "shape",
     "sampling",
@@ -158,7 +158,7 @@ const OF_SHAPES: [&str; 5] = [
 ];
 
 impl Table {
-    /// A body that is given a particle list has its shape no more, nor the other way round.
+    /// Removes the shape of a body that is given a particle list, and the other way round.
     fn make_way_for(&mut self, key: &str) {
         self.entries.retain(|entry| match key {
             "particles" => !OF_SHAPES.contains(&entry.key.as_str()),
@@ -168,7 +168,7 @@ impl Table {
     }
 }
 
-/// A parsed scene, overrides applied.
+/// A parsed scene, with overrides applied.
 #[derive(Clone, Debug)]
 pub(crate) struct Document {
     pub(crate) sources: Sources,
@@ -176,7 +176,7 @@ pub(crate) struct Document {
 }
 
 impl Document {
-    /// Reads `text` and lays the overrides over it.
+    /// Parses `text` and applies the overrides.
     pub(crate) fn parse(
         text: &str,
         name: &str,
@@ -254,8 +254,8 @@ impl Document {
         Err(bad())
     }
 
-    /// The place of a dotted key ("materials.water.density"), or of the longest part of it that is
-    /// in the scene.
+    /// Returns the place of a dotted key ("materials.water.density"), or of the longest part of it that the scene
+    /// has.
     pub(crate) fn locate(&self, key: &str) -> Option<Span> {
         let mut span = None;
         let mut table = &self.root;
@@ -290,7 +290,7 @@ impl Document {
     }
 }
 
-/// Puts `node` at `path`, making tables on the way.
+/// Puts `node` at `path`, and makes the tables on the way.
 fn set_in_table(
     sources: &Sources,
     table: &mut Table,
@@ -359,7 +359,7 @@ fn set_in_table(
     }
 }
 
-/// An element of a list of tables by its name or number.
+/// Returns the index of an element of a list of tables, which is given by its name or number.
 fn element_index(list: &[Node], name: &str) -> Option<usize> {
     list.iter()
         .position(|node| element_name(node) == Some(name))
@@ -376,7 +376,7 @@ fn element_name(node: &Node) -> Option<&str> {
     }
 }
 
-/// A value of `--set` that needs no quotes: a word, a path.
+/// Returns true if a value of `--set` needs no quotes: a word, a path.
 fn is_bare_word(value: &str) -> bool {
     let value = value.trim();
     value.starts_with(|c: char| c.is_alphabetic() || c == '/' || c == '.')
@@ -385,14 +385,14 @@ fn is_bare_word(value: &str) -> bool {
             .all(|c| c.is_alphanumeric() || " _-./".contains(c))
 }
 
-/// A value written in TOML by this crate itself: defaults and presets. `None`: not TOML.
+/// Parses a value that this crate writes in TOML: defaults and presets. Returns `None` if it is not TOML.
 pub(crate) fn literal(text: &str, span: Span) -> Option<Node> {
     let mut node = convert(&DeValue::parse(text).ok()?, 0, 0);
     place(&mut node, span);
     Some(node)
 }
 
-/// A table written in TOML by this crate itself, all of it at `span`.
+/// Parses a table that this crate writes in TOML, with `span` as the place of all of it.
 pub(crate) fn literal_table(text: &str, span: Span) -> Option<Table> {
     let mut table = convert_table(DeTable::parse(text).ok()?.get_ref(), 0, 0);
     for entry in &mut table.entries {
@@ -424,7 +424,7 @@ fn syntax(sources: &Sources, source: usize, offset: usize, error: &toml::de::Err
         end: range.end + offset,
     };
     let message = error.message().lines().collect::<Vec<_>>().join("; ");
-    // Where a line ends after "=", the parser speaks of quotes.
+    // Where a line ends after "=", the message of the parser is about quotes.
     let error = sources.error(span, "");
     let before = error.text.chars().take(error.column.saturating_sub(1));
     let rest = error.text.chars().skip(error.column.saturating_sub(1));
@@ -488,7 +488,7 @@ fn convert_table(table: &DeTable<'_>, source: usize, offset: usize) -> Table {
     Table { entries }
 }
 
-/// The tree as JSON; what JSON has no number for is spelled out.
+/// Returns the tree as JSON. Numbers that JSON does not have (infinite ones) become words.
 pub(crate) fn json(node: &Node) -> serde_json::Value {
     match &node.value {
         Value::Text(text) => text.clone().into(),
@@ -510,7 +510,7 @@ pub(crate) fn json_table(table: &Table) -> serde_json::Value {
         .collect()
 }
 
-/// A tree as [`json`] has made it, without places; `None` for what no scene has.
+/// Returns a tree from the JSON that [`json`] has made, without places; `None` for values that no scene has.
 pub(crate) fn from_json(value: &serde_json::Value) -> Option<Node> {
     let span = Span::default();
     let value = match value {

@@ -1,21 +1,21 @@
-//! Forces of a scene, and what they may do to its speeds.
+//! Reads forces, and estimates the accelerations that they cause.
 
-use super::formula::{Formulas, Of};
+use super::formula::{Formulas, Variables};
 use super::read::Reader;
 use crate::error::SceneError;
 use lahar::geometry::Bounds;
 use lahar::{Force, Pull};
 use std::sync::Arc;
 
-/// What a force is.
+/// The keys that say what kind of force a table is.
 const KINDS: [&str; 5] = ["acceleration", "central", "vortex", "drag", "damping"];
 
-/// Gravity, a part that is the same always and what is left of its expressions, and the forces.
+/// Reads gravity and the forces. Returns the constant part of gravity, and all other accelerations as forces.
 pub(crate) fn read_forces<const D: usize>(
     scene: &Reader<'_>,
     dx: f64,
 ) -> Result<([f64; D], Vec<Force<D>>), SceneError> {
-    let gravity: Formulas<D> = scene.formulas("gravity", Of::PlaceAndTime)?;
+    let gravity: Formulas<D> = scene.formulas("gravity", Variables::PlaceAndTime)?;
     let constant = gravity.constants();
     let mut forces = Vec::new();
     if !gravity.is_constant() {
@@ -74,28 +74,29 @@ fn read_force<const D: usize>(table: &Reader<'_>, dx: f64) -> Result<Force<D>, S
             velocity: [0.0; D],
         },
         _ => Force::Field(Arc::new(
-            table.formulas::<D>("acceleration", Of::PlaceAndTime)?,
+            table.formulas::<D>("acceleration", Variables::PlaceAndTime)?,
         )),
     })
 }
 
-/// Accelerations by forces where bodies are, over a run.
+/// Statistics of the accelerations by forces, over the bodies and the duration of a run.
 pub(crate) struct Expected<const D: usize> {
-    /// Their mean \[m/s²\].
+    /// The mean acceleration \[m/s²\].
     pub(crate) mean: [f64; D],
-    /// How far they are from it at the most \[m/s²\].
+    /// The largest deviation from the mean \[m/s²\].
     pub(crate) swing: f64,
 }
 
-/// Places along an axis of a body, and moments of a run, that are looked at.
+/// Points along an axis of a body at which forces are evaluated.
 const PLACES: usize = 5;
+/// Moments of a run at which forces are evaluated.
 const MOMENTS: usize = 128;
 
-/// Part of a run from one moment to the next, round and round: the golden section falls in step
-/// with no oscillation.
+/// Part of the run between one moment and the next, wrapped around. The golden section is in step with no
+/// oscillation.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
-/// Looks at the forces on a lattice of each of the `bodies`, from the start to `duration` \[s\].
+/// Evaluates the forces on a lattice over each of the `bodies`, from time 0 to `duration` \[s\].
 pub(crate) fn expect<const D: usize>(
     forces: &[Force<D>],
     bodies: &[Bounds<D>],
@@ -125,7 +126,7 @@ pub(crate) fn expect<const D: usize>(
     Expected { mean, swing }
 }
 
-/// `n` places along each axis of a box, its faces included.
+/// Returns a lattice with `n` points along each axis of a box, its faces included.
 pub(crate) fn lattice<const D: usize>(bounds: &Bounds<D>, n: usize) -> Vec<[f64; D]> {
     (0..n.pow(D as u32))
         .map(|number| {

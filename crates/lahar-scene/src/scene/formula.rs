@@ -1,37 +1,39 @@
-//! Vectors of a scene that are numbers or formulas: gravity, forces, velocities at the start.
+//! Vectors of numbers or formulas: gravity, forces, velocities at the start.
 
 use super::document::{Node, Sources, Value};
 use crate::error::SceneError;
 use crate::expression::{BLOCK, Expression};
 use lahar::AccelerationField;
 
-/// Variables of formulas, by their numbers: place, time, place at the start.
+/// Number of the variable x; y and z follow.
 const X: usize = 0;
+/// Number of the variable t.
 const T: usize = 3;
+/// Number of the variable X; Y and Z follow.
 const START: usize = 4;
 
-/// A formula may not depend on everything.
+/// The variables that a formula may depend on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Of {
-    /// x, y, z.
+pub(crate) enum Variables {
+    /// The position x, y, z.
     Place,
-    /// x, y, z, t, and X, Y, Z where a particle started.
+    /// The position x, y, z, the time t, and the position X, Y, Z at which a particle started.
     PlaceAndTime,
 }
 
-impl Of {
-    /// Names of the variables, in the order of their numbers.
+impl Variables {
+    /// Returns the names of the variables, in the order of their numbers.
     fn variables(self, dimension: usize) -> Vec<&'static str> {
         match (self, dimension) {
             (Self::Place, 2) => vec!["x", "y"],
             (Self::Place, _) => vec!["x", "y", "z"],
-            // No formula can contain a name of two words, so that the numbers stay the same.
+            // "(z)" keeps the numbers the same as in 3D. No formula can contain such a name.
             (Self::PlaceAndTime, 2) => vec!["x", "y", "(z)", "t", "X", "Y"],
             (Self::PlaceAndTime, _) => vec!["x", "y", "z", "t", "X", "Y", "Z"],
         }
     }
 
-    /// Reads one component.
+    /// Reads one component of a vector.
     pub(crate) fn parse(
         self,
         text: &str,
@@ -41,22 +43,22 @@ impl Of {
     }
 }
 
-/// D components, each a formula; numbers are formulas too.
+/// A vector of D formulas. A number is a formula too.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Formulas<const D: usize>(pub(crate) [Expression; D]);
 
 impl<const D: usize> Formulas<D> {
-    /// The components that are numbers; 0 where they are not.
+    /// Returns the components that are numbers, and 0 for the others.
     pub(crate) fn constants(&self) -> [f64; D] {
         core::array::from_fn(|i| self.0[i].constant().unwrap_or(0.0))
     }
 
-    /// Whether all are numbers.
+    /// Returns true if all components are numbers.
     pub(crate) fn is_constant(&self) -> bool {
         self.0.iter().all(|formula| formula.constant().is_some())
     }
 
-    /// The rest when [`Self::constants`] are taken away.
+    /// Returns the formulas minus [`Self::constants`].
     pub(crate) fn without_constants(mut self) -> Self {
         for formula in &mut self.0 {
             if formula.constant().is_some() {
@@ -66,7 +68,7 @@ impl<const D: usize> Formulas<D> {
         self
     }
 
-    /// The values at `positions` at the start.
+    /// Returns the values at `positions` \[m\] at time 0.
     pub(crate) fn at(&self, positions: &[[f64; D]]) -> Vec<[f64; D]> {
         let mut out = vec![[0.0; D]; positions.len()];
         self.accelerations(0.0, positions, positions, &mut out);
@@ -83,7 +85,7 @@ impl<const D: usize> AccelerationField<D> for Formulas<D> {
         out: &mut [[f64; D]],
     ) {
         for (axis, formula) in self.0.iter().enumerate() {
-            // What is the same everywhere is computed once.
+            // A component without variables is computed once.
             let same = (0..D).all(|i| !formula.uses(X + i) && !formula.uses(START + i));
             if same {
                 let mut value = [0.0];
@@ -122,7 +124,7 @@ impl<const D: usize> AccelerationField<D> for Formulas<D> {
 pub(crate) fn read_formula(
     sources: &Sources,
     node: &Node,
-    of: Of,
+    variables: Variables,
     dimension: usize,
 ) -> Result<Expression, SceneError> {
     let text = match &node.value {
@@ -132,7 +134,7 @@ pub(crate) fn read_formula(
             return Ok(Expression::number(number));
         }
     };
-    of.parse(text, dimension).map_err(|error| {
+    variables.parse(text, dimension).map_err(|error| {
         let span = sources.within(node.span, text, error.place);
         let found = sources.error(span, error.message);
         match error.hint {

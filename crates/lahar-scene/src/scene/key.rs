@@ -1,6 +1,6 @@
 //! Keys of scene files: their names, kinds, units and defaults. The tables of keys are made of these.
 
-use super::formula::Of;
+use super::formula::Variables;
 
 /// A table of a scene file.
 #[derive(Debug)]
@@ -63,7 +63,7 @@ pub(crate) enum Kind {
     /// D numbers.
     Vector,
     /// D numbers or expressions.
-    Formulas(Of),
+    Formulas(Variables),
     /// A number in 2D, three in 3D.
     Rotation,
     /// D rows of D numbers.

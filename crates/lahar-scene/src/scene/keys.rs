@@ -1,7 +1,7 @@
 //! The one table of keys: the reader checks scenes by it and takes the defaults from it; the JSON
 //! schema and the tables of docs/scene-format.md are made from it.
 
-use super::formula::Of;
+use super::formula::Variables;
 use super::key::WhenAbsent::{ByDimension, Required, Value, Words};
 use super::key::{Bound, Key, Kind, Section, key, later, only_3d};
 
@@ -75,7 +75,7 @@ pub(crate) static SCENE: Section = Section {
         ),
         key(
             "gravity",
-            Kind::Formulas(Of::PlaceAndTime),
+            Kind::Formulas(Variables::PlaceAndTime),
             "m/s²",
             ByDimension("[0.0, -9.81]", "[0.0, -9.81, 0.0]"),
             "Acceleration of everything; may be expressions.",
@@ -439,7 +439,7 @@ pub(crate) static BODY: Section = Section {
         ),
         key(
             "velocity",
-            Kind::Formulas(Of::Place),
+            Kind::Formulas(Variables::Place),
             "m/s",
             ByDimension("[0.0, 0.0]", "[0.0, 0.0, 0.0]"),
             "Velocity at the start, numbers or expressions in x, y, z; added to that of a particle list.",
@@ -885,7 +885,7 @@ pub(crate) static FORCE: Section = Section {
         ),
         key(
             "acceleration",
-            Kind::Formulas(Of::PlaceAndTime),
+            Kind::Formulas(Variables::PlaceAndTime),
             "m/s²",
             Words("–"),
             "An acceleration, numbers or expressions.",

@@ -1,5 +1,5 @@
-//! The motion that bodies give to their particles, some at a time: velocities and their gradients are the larger
-//! part of what is known of a particle at the start.
+//! The motion of bodies at the start, given to their particles in parts: velocities and their gradients take most
+//! of the memory of a particle at the start.
 
 use super::plan::{Body, Plan};
 use crate::parallel::*;
@@ -8,13 +8,13 @@ use lahar::geometry::Bounds;
 use lahar::geometry::sampling::Random;
 use lahar::{Deformation, ParticleBatch};
 
-/// Particles handed on together.
+/// Particles per part.
 const A_PART: usize = 1 << 18;
 
 /// Particles whose formulas are evaluated together.
 const AT_A_TIME: usize = 1 << 14;
 
-/// The particles of bodies, in motion: body after body, in parts.
+/// Iterates over the particles of bodies with their motion: body after body, in parts.
 pub(crate) struct InMotion<'a, const D: usize> {
     plan: &'a Plan<D>,
     seed: u64,
@@ -22,18 +22,18 @@ pub(crate) struct InMotion<'a, const D: usize> {
     current: Option<Moving<'a, D>>,
 }
 
-/// The rest of a body that is handed on in parts.
+/// The rest of a body of which parts have been returned.
 struct Moving<'a, const D: usize> {
     body: &'a Body<D>,
     batch: ParticleBatch<D>,
     center: [f64; D],
-    /// Numbers of its own, so that positions do not depend on the spread.
+    /// A stream of its own, so that positions do not depend on the velocity spread.
     random: Random,
     next: usize,
 }
 
 impl<'a, const D: usize> InMotion<'a, D> {
-    /// `batches` are those of the plan's bodies.
+    /// Starts with `batches`, the particles of the plan's bodies at rest.
     pub(crate) fn new(plan: &'a Plan<D>, batches: Vec<ParticleBatch<D>>, seed: u64) -> Self {
         Self {
             plan,
@@ -72,7 +72,7 @@ impl<const D: usize> Iterator for InMotion<'_, D> {
     }
 }
 
-/// Whether a body gives the same velocity to all its particles.
+/// Returns true if all particles of a body have the same velocity.
 fn is_uniform<const D: usize>(body: &Body<D>) -> bool {
     let turns = body.gradient.iter().flatten().any(|g| *g != 0.0);
     !turns && body.velocity.is_constant() && body.velocity_spread == [0.0; D]
@@ -89,8 +89,8 @@ fn add_velocity<const D: usize>(batch: &mut ParticleBatch<D>, velocity: [f64; D]
 }
 
 impl<const D: usize> Moving<'_, D> {
-    /// The next particles, if there are more: v(x) + G (x − centre of mass) added to the velocities, and
-    /// ∂v/∂x + G to the affine matrices.
+    /// Returns the next particles, if there are more. Their velocities have v(x) + G (x − center of mass) added, and
+    /// their affine matrices ∂v/∂x + G.
     fn next_part(&mut self, dx: f64) -> Option<ParticleBatch<D>> {
         let end = self.batch.position.len().min(self.next + A_PART);
         if self.next == end {
@@ -118,7 +118,7 @@ impl<const D: usize> Moving<'_, D> {
         Some(part)
     }
 
-    /// Adds to each velocity up to the body's spread, at random.
+    /// Adds a random number up to the body's spread to each velocity.
     fn add_spread(&mut self, velocities: &mut [[f64; D]]) {
         if self.body.velocity_spread == [0.0; D] {
             return;
@@ -131,13 +131,13 @@ impl<const D: usize> Moving<'_, D> {
     }
 }
 
-/// Some of the particles of `batch`.
+/// Returns a part of the particles of `batch`.
 fn part_of<const D: usize>(batch: &ParticleBatch<D>, range: Range<usize>) -> ParticleBatch<D> {
     fn some<T: Clone>(values: &[T], range: Range<usize>, count: usize) -> Vec<T> {
         if values.len() == count {
             values[range].to_vec()
         } else {
-            values.to_vec() // one for all, or none
+            values.to_vec() // One value for all particles, or none.
         }
     }
     let count = batch.position.len();
@@ -161,7 +161,7 @@ fn part_of<const D: usize>(batch: &ParticleBatch<D>, range: Range<usize>) -> Par
     }
 }
 
-/// Adds to the motion of some of the particles of a body.
+/// Adds the motion of a body to a part of its particles.
 fn move_by<const D: usize>(
     body: &Body<D>,
     center: [f64; D],
@@ -185,7 +185,7 @@ fn move_by<const D: usize>(
     if body.velocity.is_constant() {
         return;
     }
-    // The gradient over a cell, which is what the grid can tell.
+    // The gradient over a cell: the grid resolves no finer one.
     for j in 0..D {
         let beside = |step: f64| -> Vec<[f64; D]> {
             let mut places = position.to_vec();
@@ -202,7 +202,7 @@ fn move_by<const D: usize>(
 }
 
 fn center_of_mass<const D: usize>(batch: &ParticleBatch<D>) -> [f64; D] {
-    // Weights need not be masses: all particles of a body have one density.
+    // Volumes serve as weights: all particles of a body have the same density.
     let weights = if batch.mass.is_empty() {
         &batch.volume
     } else {
@@ -215,7 +215,7 @@ fn center_of_mass<const D: usize>(batch: &ParticleBatch<D>) -> [f64; D] {
             1.0
         }
     };
-    // Summed from the middle of the bounds, so that nothing is lost far from the origin.
+    // The sum is relative to the middle of the bounds, so that no digits are lost far from the origin.
     let bounds = Bounds::around_points(&batch.position);
     let middle: [f64; D] = core::array::from_fn(|k| 0.5 * (bounds.min[k] + bounds.max[k]));
     let mut total = 0.0;

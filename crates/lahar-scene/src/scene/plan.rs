@@ -11,11 +11,11 @@ use lahar::{
     Transfer,
 };
 
-/// Everything that depends on the dimension.
+/// The part of a scene that depends on the dimension.
 #[derive(Clone, Debug)]
 pub(crate) struct Plan<const D: usize> {
     pub(crate) dx: f64,
-    /// The part of gravity that is the same always.
+    /// The constant part of gravity \[m/s²\].
     pub(crate) gravity: [f64; D],
     pub(crate) forces: Vec<Force<D>>,
     /// Simulated time of a run \[s\].
@@ -29,22 +29,22 @@ pub(crate) struct Plan<const D: usize> {
     pub(crate) force: ForceForm,
     pub(crate) time_step: TimeStep,
     pub(crate) materials: Vec<Material>,
-    /// Fluids whose speed of sound the scene leaves open.
+    /// Indices of the fluids whose speed of sound the scene leaves open.
     pub(crate) automatic: Vec<usize>,
     pub(crate) bodies: Vec<Body<D>>,
-    /// What is measured on the way.
+    /// The probes.
     pub(crate) probes: Vec<Probe<D>>,
     pub(crate) warnings: Vec<String>,
 }
 
-/// One body.
+/// A body.
 #[derive(Clone, Debug)]
 pub(crate) struct Body<const D: usize> {
     pub(crate) name: String,
     pub(crate) material: usize,
     pub(crate) source: Source<D>,
     pub(crate) velocity: Formulas<D>,
-    /// How far each particle's velocity may be from that \[m/s\].
+    /// Largest random deviation of a particle's velocity from `velocity` \[m/s\].
     pub(crate) velocity_spread: [f64; D],
     /// ∂v_i/∂x_j of spin and velocity gradient together \[1/s\].
     pub(crate) gradient: [[f64; D]; D],
@@ -52,7 +52,7 @@ pub(crate) struct Body<const D: usize> {
     pub(crate) pressure: StartPressure,
 }
 
-/// Where the particles come from.
+/// The source of a body's particles.
 #[derive(Clone, Debug)]
 pub(crate) enum Source<const D: usize> {
     Shape {
@@ -64,18 +64,18 @@ pub(crate) enum Source<const D: usize> {
     List(ParticleList<D>),
 }
 
-/// Who says what the particles' volume is.
+/// The rule for the rest volumes of a body's particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Volume {
-    /// The shape, or the list.
+    /// The volume of the shape shared alike, or the volumes of the list.
     Source,
-    /// The scene, for the body \[m³\].
+    /// The volume of the body that the scene gives \[m³\].
     Body(f64),
-    /// The scene, for a particle \[m³\].
+    /// The volume per particle that the scene gives \[m³\].
     Particle(f64),
-    /// The shape's, shared so that the grid is evenly filled; on a lattice it is.
+    /// The volume of the shape, shared so that the grid is evenly filled. On a lattice this is an equal share.
     Even,
-    /// The grid, at the start.
+    /// The volume that each particle has on the grid at the start.
     Measured,
 }
 
@@ -83,14 +83,14 @@ pub(crate) enum Volume {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum StartPressure {
     None,
-    /// That of a body at rest under gravity.
+    /// The pressure of a body at rest under gravity.
     Hydrostatic,
-    /// That, if the body is at rest.
+    /// Hydrostatic if the body is at rest on the floor.
     Automatic,
 }
 
 impl<const D: usize> Body<D> {
-    /// Whether nothing of it moves at the start.
+    /// Returns true if no part of the body moves at the start.
     fn is_still(&self) -> bool {
         let listed = match &self.source {
             Source::Shape { .. } => false,
@@ -103,7 +103,7 @@ impl<const D: usize> Body<D> {
             && self.gradient == [[0.0; D]; D]
     }
 
-    /// A box around its particles \[m\].
+    /// Returns a box around the particles \[m\].
     pub(crate) fn bounds(&self) -> Bounds<D> {
         match &self.source {
             Source::Shape { region, .. } => *region.bounds(),
@@ -111,7 +111,7 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// Particles; of shapes that are sampled on lattices about so many.
+    /// Returns the number of particles: an estimate for shapes that are sampled on lattices.
     pub(crate) fn expected_particles(&self) -> f64 {
         match &self.source {
             Source::Shape {
@@ -127,14 +127,14 @@ impl<const D: usize> Body<D> {
         }
     }
 
-    /// The largest speed at the start \[m/s\], or a bound on it.
+    /// Returns a bound on the speeds at the start \[m/s\].
     pub(crate) fn speed(&self) -> f64 {
         let length = |v: &[f64; D]| v.iter().map(|v| v * v).sum::<f64>().sqrt();
         let bounds = self.bounds();
         let half: [f64; D] = core::array::from_fn(|i| 0.5 * bounds.side(i));
         let turning: [f64; D] =
             core::array::from_fn(|i| (0..D).map(|j| self.gradient[i][j].abs() * half[j]).sum());
-        // Places along an axis at which a formula is looked at.
+        // Points along an axis at which a formula is evaluated.
         const PLACES: usize = 9;
         let own = if self.velocity.is_constant() {
             vec![self.velocity.constants()]
@@ -151,7 +151,7 @@ impl<const D: usize> Body<D> {
 }
 
 impl<const D: usize> Plan<D> {
-    /// Whether a body of fluid starts with the pressure of its own weight.
+    /// Returns true if a body of fluid starts with the pressure of its own weight.
     pub(crate) fn starts_hydrostatic(&self, body: &Body<D>, fluid: &Fluid) -> bool {
         match body.pressure {
             StartPressure::None => false,
@@ -163,7 +163,7 @@ impl<const D: usize> Plan<D> {
         }
     }
 
-    /// Whether a body touches the wall that it is drawn to most.
+    /// Returns true if a body touches the wall towards which gravity pulls most.
     fn stands_on_floor(&self, body: &Body<D>) -> bool {
         let Some(domain) = &self.domain else {
             return false;
@@ -180,7 +180,7 @@ impl<const D: usize> Plan<D> {
             return false;
         };
         let bounds = body.bounds();
-        // Half a cell: particles of a list are not on the wall themselves.
+        // Half a cell is near: the particles of a list are not on the wall themselves.
         let near = |gap: f64| gap.abs() <= 0.5 * self.dx;
         (g[axis] < 0.0 && low != Contact::Open && near(bounds.min[axis] - domain.min[axis]))
             || (g[axis] > 0.0 && high != Contact::Open && near(bounds.max[axis] - domain.max[axis]))

@@ -1,18 +1,18 @@
-//! What a scene measures on the way.
+//! Reads probes.
 
 use super::read::Reader;
 use crate::error::SceneError;
 use lahar::{Gauge, Plate, Probe};
 
-/// What a probe measures.
+/// The keys that say what a probe measures.
 const KINDS: [&str; 5] = ["pressure", "velocity", "height", "front", "force"];
 
-/// Cells that a gauge of pressure or velocity looks at around its place, if the scene does not say: enough layers of particles to
-/// tell the slope of the pressure on a wall, and to even out what they have of their own (a point in a resting tank
-/// of jittered particles reads within 2.5, 1 and 0.2 % with 1.5, 2 and 3).
+/// Radius of a gauge of pressure or velocity, if the scene does not say \[cells\]: enough layers of particles to find
+/// the slope of the pressure on a wall, and to average over their noise. In a resting tank of jittered particles, a
+/// point reads within 2.5, 1 and 0.2 % with 1.5, 2 and 3 cells.
 const RADIUS_CELLS: f64 = 2.0;
 
-/// The probes of a scene; they are read every frame if they do not say otherwise.
+/// Reads the probes of a scene. They are read every frame if they give no rate.
 pub(crate) fn read_probes<const D: usize>(
     scene: &Reader<'_>,
     dx: f64,
@@ -32,7 +32,7 @@ pub(crate) fn read_probes<const D: usize>(
             );
             return Err(error.hint("it names a file: use letters, digits, - and _ only"));
         }
-        // Some file systems do not tell capitals from small letters.
+        // Some file systems do not distinguish capitals.
         if probes
             .iter()
             .any(|probe| probe.name.eq_ignore_ascii_case(name))

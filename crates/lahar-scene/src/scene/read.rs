@@ -1,12 +1,12 @@
-//! Typed access to a checked table. Kinds and defaults were seen to by `check`: what is absent here
-//! has no default.
+//! Typed access to a checked table. `check` has checked the kinds and filled in the defaults: a key that is
+//! absent here has no default.
 
 use super::document::{Node, Sources, Span, Table, Value};
-use super::formula::{Formulas, Of, read_formula};
+use super::formula::{Formulas, Variables, read_formula};
 use super::key::color;
 use crate::error::SceneError;
 
-/// A table of the scene, with its place.
+/// A table of the scene with its place.
 #[derive(Clone, Copy)]
 pub(crate) struct Reader<'a> {
     sources: &'a Sources,
@@ -23,12 +23,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// An error at the table itself.
+    /// Makes an error that points at the table itself.
     pub(crate) fn error(&self, message: impl Into<String>) -> SceneError {
         self.sources.error(self.span, message)
     }
 
-    /// An error at the value of `key`, or at the table if that is absent.
+    /// Makes an error that points at the value of `key`, or at the table if the key is absent.
     pub(crate) fn error_at(&self, key: &str, message: impl Into<String>) -> SceneError {
         self.sources.error(
             self.table.get(key).map_or(self.span, |node| node.span),
@@ -36,7 +36,7 @@ impl<'a> Reader<'a> {
         )
     }
 
-    /// An error at `key` itself.
+    /// Makes an error that points at `key` itself, or at the table if the key is absent.
     pub(crate) fn error_at_key(&self, key: &str, message: impl Into<String>) -> SceneError {
         self.sources.error(
             self.table
@@ -46,7 +46,7 @@ impl<'a> Reader<'a> {
         )
     }
 
-    /// Whether the value of `key` comes from `--set`.
+    /// Returns true if the value of `key` comes from `--set`.
     pub(crate) fn is_override(&self, key: &str) -> bool {
         self.table
             .get(key)
@@ -72,7 +72,7 @@ impl<'a> Reader<'a> {
         self.required(key, self.opt_text(key))
     }
 
-    /// Returns what the word of `key` stands for; an error if it is none of `words`.
+    /// Returns the meaning of the word of `key`; an error if it is none of `words`.
     pub(crate) fn choice<T: Copy>(&self, key: &str, words: &[(&str, T)]) -> Result<T, SceneError> {
         let given = self.text(key)?;
         match words.iter().find(|(word, _)| *word == given) {
@@ -115,11 +115,11 @@ impl<'a> Reader<'a> {
         self.required(key, self.opt_vector(key))
     }
 
-    /// D numbers or expressions.
+    /// Returns D numbers or expressions.
     pub(crate) fn formulas<const D: usize>(
         &self,
         key: &str,
-        of: Of,
+        variables: Variables,
     ) -> Result<Formulas<D>, SceneError> {
         let list = match self.table.get(key).map(|node| &node.value) {
             Some(Value::List(list)) => list.as_slice(),
@@ -127,12 +127,12 @@ impl<'a> Reader<'a> {
         };
         let formulas = list
             .iter()
-            .map(|node| read_formula(self.sources, node, of, D))
+            .map(|node| read_formula(self.sources, node, variables, D))
             .collect::<Result<Vec<_>, _>>()?;
         self.required(key, formulas.try_into().ok().map(Formulas))
     }
 
-    /// Rows of D numbers.
+    /// Returns rows of D numbers.
     pub(crate) fn opt_rows<const D: usize>(&self, key: &str) -> Option<Vec<[f64; D]>> {
         match &self.table.get(key)?.value {
             Value::List(rows) => rows.iter().map(vector).collect(),
@@ -165,7 +165,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The elements of a list, with `None` for each that is not a number.
+    /// Returns the elements of a list, with `None` for each that is not a number.
     pub(crate) fn opt_components(&self, key: &str) -> Option<Vec<Option<f64>>> {
         match &self.table.get(key)?.value {
             Value::List(list) => Some(list.iter().map(|node| node.value.as_number()).collect()),
@@ -173,13 +173,13 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The keys of this table that have numbers for values, and these numbers, in order.
+    /// Returns the keys of this table that have numbers for values, with these numbers, in order.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = (&'a str, f64)> {
         (self.table.entries.iter())
             .filter_map(|entry| Some((entry.key.as_str(), entry.node.value.as_number()?)))
     }
 
-    /// The tables in a table or list, with their keys; elements of a list have the empty key.
+    /// Returns the tables in a table or list, with their keys. Elements of a list have an empty key.
     pub(crate) fn tables(&self, key: &str) -> Vec<(&'a str, Reader<'a>)> {
         match self.table.get(key).map(|node| &node.value) {
             Some(Value::Table(table)) => table

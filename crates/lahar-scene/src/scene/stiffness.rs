@@ -1,4 +1,4 @@
-//! How stiff fluids are: by the fastest flow that is expected, where the scene leaves it open.
+//! The stiffness of fluids. Where the scene leaves it open, it follows from the fastest flow that is expected.
 
 use super::forces::expect;
 use super::material::Stiffness;
@@ -9,58 +9,57 @@ use crate::error::SceneError;
 use lahar::geometry::Bounds;
 use lahar::{Command, Model, TimeStep};
 
-/// Sound travels so many times faster than the fastest water that is expected: density then varies
-/// by about 1 % (Monaghan 1994).
+/// The speed of sound over the largest speed expected. With 10, the density varies by about 1 % (Monaghan 1994).
 const SOUND_OVER_SPEED: f64 = 10.0;
 
-/// How far things may fall, and what else makes them fast.
+/// Bounds on speeds: how far bodies may fall, and the other causes of speed.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Falls<const D: usize> {
     bodies: Vec<Bounds<D>>,
-    /// Where things can be.
-    room: Bounds<D>,
-    /// The mean acceleration by forces besides gravity \[m/s²\].
+    /// The space that the material can reach.
+    space: Bounds<D>,
+    /// The mean acceleration by forces other than gravity \[m/s²\].
     forces: [f64; D],
-    /// Squared speeds of bodies and colliders, and of what swinging forces make \[m²/s²\].
+    /// The largest squared speed of bodies, colliders and oscillating forces together \[m²/s²\].
     squared: f64,
 }
 
 impl<const D: usize> Falls<D> {
-    /// What forces swing by counts over half of the longest side.
+    /// Finds the bounds of a plan. Oscillating forces count over half of the longest side.
     pub(super) fn of(plan: &Plan<D>) -> Self {
         let bodies: Vec<Bounds<D>> = plan.bodies.iter().map(Body::bounds).collect();
         let forces = expect(&plan.forces, &bodies, plan.duration);
-        let room = match &plan.domain {
+        let space = match &plan.domain {
             Some(domain) => Bounds {
                 min: domain.min,
                 max: domain.max,
             },
             None => Bounds::around(bodies.iter().copied()),
         };
-        let longest = (0..D).map(|i| room.side(i)).fold(0.0, f64::max);
+        let longest = (0..D).map(|i| space.side(i)).fold(0.0, f64::max);
         let thrown = plan.bodies.iter().map(Body::speed).fold(0.0, f64::max);
         let pushed = plan
             .colliders
             .iter()
-            .map(|collider| collider.largest_speed(0.0, plan.duration, (room.min, room.max)))
+            .map(|collider| collider.largest_speed(0.0, plan.duration, (space.min, space.max)))
             .fold(thrown, f64::max);
         Self {
             bodies,
-            room,
+            space,
             forces: forces.mean,
             squared: pushed * pushed + forces.swing * longest,
         }
     }
 
-    /// Largest speed that the bodies may reach from where they start \[m/s\]: √(v² + 2 g H), with g the
+    /// Returns the largest speed that the bodies may reach from where they start \[m/s\]: √(v² + 2 g H), with g the
     /// mean of gravity and forces.
     pub(super) fn speed(&self, gravity: [f64; D]) -> f64 {
         self.speed_from(gravity, &self.bodies)
     }
 
-    /// The same if they may start anywhere in the room.
+    /// Returns the same speed for bodies that may start anywhere in `space`.
     fn speed_from_anywhere(&self, gravity: [f64; D]) -> f64 {
-        self.speed_from(gravity, core::slice::from_ref(&self.room))
+        self.speed_from(gravity, core::slice::from_ref(&self.space))
     }
 
     fn speed_from(&self, gravity: [f64; D], starts: &[Bounds<D>]) -> f64 {
@@ -69,7 +68,7 @@ impl<const D: usize> Falls<D> {
         if g == 0.0 {
             return self.squared.sqrt();
         }
-        // Lowest and highest height of a box against gravity.
+        // The lowest and the highest coordinate of a box, measured against gravity.
         let heights = |bounds: &Bounds<D>| {
             let mut range = [0.0, 0.0];
             for i in 0..D {
@@ -82,7 +81,7 @@ impl<const D: usize> Falls<D> {
             range
         };
         let tops = starts.iter().map(|bounds| heights(bounds)[1]);
-        let fall = tops.fold(f64::NEG_INFINITY, f64::max) - heights(&self.room)[0];
+        let fall = tops.fold(f64::NEG_INFINITY, f64::max) - heights(&self.space)[0];
         (self.squared + 2.0 * g * fall.max(0.0)).sqrt()
     }
 }
@@ -118,7 +117,7 @@ impl<const D: usize> Plan<D> {
         Ok(())
     }
 
-    /// See [`SoundSpeeds`].
+    /// Returns the rule for the speeds of sound under changed gravity.
     pub(super) fn sound_speeds(&self) -> SoundSpeeds {
         let speed = |&material: &usize| (material, self.materials[material].sound_speed());
         let falls = Falls::of(self);
@@ -128,7 +127,7 @@ impl<const D: usize> Plan<D> {
             gravity: vector_in_3d(self.gravity),
             falls: Falls {
                 bodies: falls.bodies.iter().map(bounds_in_3d).collect(),
-                room: bounds_in_3d(&falls.room),
+                space: bounds_in_3d(&falls.space),
                 forces: vector_in_3d(falls.forces),
                 squared: falls.squared,
             },
@@ -136,24 +135,33 @@ impl<const D: usize> Plan<D> {
     }
 }
 
-/// How fast sound should be when gravity is changed while a scene runs, in the fluids whose scene leaves
-/// that open: ten times the largest speed expected, and no less than at the start. A scene with a fixed
-/// time step keeps its speeds, since its step is chosen for them.
+/// The rule for the speeds of sound when gravity is changed during a run, for fluids whose scene leaves them open:
+/// ten times the largest speed expected, and no less than at the start. A scene with a fixed time step keeps its
+/// speeds of sound, because its step is chosen for them.
+///
+/// ```
+/// use lahar_scene::scene::Scene;
+///
+/// let scene = Scene::load("dam-break", &[])?;
+/// let commands = scene.sound_speeds().under([0.0, -40.0, 0.0]);
+/// assert_eq!(commands.len(), 1);
+/// # Ok::<(), lahar_scene::error::SceneError>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct SoundSpeeds {
-    /// Materials and their speeds of sound at the start.
+    /// Indices of materials, and their speeds of sound at the start \[m/s\].
     materials: Vec<(usize, f64)>,
-    /// At the start.
+    /// Gravity at the start \[m/s²\].
     gravity: [f64; 3],
     falls: Falls<3>,
 }
 
 impl SoundSpeeds {
-    /// What to tell the simulation along with a new `gravity` \[m/s²\].
+    /// Returns the commands that go with a new `gravity` \[m/s²\].
     pub fn under(&self, gravity: [f64; 3]) -> Vec<Command> {
         let [a, b] = [self.gravity, gravity].map(|g| g.map(|x| x * x).iter().sum::<f64>().sqrt());
         let along: f64 = (0..3).map(|i| self.gravity[i] * gravity[i]).sum();
-        // While down stays down, nothing falls from higher than it started.
+        // As long as the direction stays, no material falls from higher than it started.
         let speed = if along >= (1.0 - 1e-9) * a * b {
             self.falls.speed(gravity)
         } else {
