@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use lahar::Isa;
-use lahar_io::files::{make_folder, write_file};
+use lahar_io::files::{output_folder, write_file};
 use lahar_lab::bench::{self, BenchError, BenchReport, Case, Machine, Options};
 use serde_json::json;
 
@@ -113,7 +113,7 @@ fn read(path: &Path) -> Result<BenchReport, CliError> {
 
 /// Draws the plots into `folder`; returns their paths.
 fn draw(report: &BenchReport, folder: &Path) -> Result<Vec<PathBuf>, CliError> {
-    make_folder(folder)?;
+    output_folder(Some(folder), PathBuf::new())?;
     let plots = bench::growth(&report.results).into_iter();
     plots
         .map(|(name, plot)| {

@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use lahar::{Data, Field, Snapshot};
 use lahar_io::export::MeshFormat;
+use lahar_io::files::output_folder;
 use lahar_io::output::{MeshFiles, Recording};
 use lahar_io::surface::{Style, Surface};
 
@@ -26,10 +27,8 @@ pub(crate) fn mesh(args: &args::Mesh) -> Result<ExitCode, CliError> {
         cube: args.cube,
         smoothing: args.smoothing,
     };
-    let folder = match &args.output {
-        Some(folder) => folder.clone(),
-        None => recording.folder().join("meshes"),
-    };
+    let default = recording.folder().join("meshes");
+    let folder = output_folder(args.output.as_deref(), default)?;
     let names: Vec<&str> = materials.iter().map(|(_, name)| name.as_str()).collect();
     let mut files = MeshFiles::create(&folder, &names, &formats)?;
     let completion =

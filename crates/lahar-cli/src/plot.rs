@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use lahar_io::files::output_folder;
 use lahar_lab::run_plots::save_plots;
 
 use crate::error::CliError;
@@ -11,8 +12,8 @@ use crate::{args, terminal};
 /// Draws the plots of `args.runs`.
 pub(crate) fn plot(args: &args::Plot) -> Result<ExitCode, CliError> {
     let folder = match (&args.output, args.runs.as_slice()) {
-        (Some(folder), _) => folder.clone(),
-        (None, [run]) => run.join("plots"),
+        (Some(folder), _) => output_folder(Some(folder), PathBuf::new())?,
+        (None, [run]) => output_folder(None, run.join("plots"))?,
         (None, _) => {
             return Err(CliError::Usage(
                 "plots of several runs need a folder of their own: name it with -o DIR".into(),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use lahar_io::files::make_folder;
+use lahar_io::files::output_folder;
 use lahar_io::image::{self, Mp4, Mp4Maker, Picture};
 use lahar_io::output::{Recording, film_pace, frame_name};
 use lahar_scene::scene::Scene;
@@ -26,11 +26,8 @@ pub(crate) fn render(args: &args::Render) -> Result<ExitCode, CliError> {
         size: args.size.map_or(scene.output.picture_size, |size| size.0),
     };
     let mut painter = Painter::choose(args.renderer, &subject)?;
-    let folder = match &args.output {
-        Some(folder) => folder.clone(),
-        None => recording.folder().join("render"),
-    };
-    make_folder(&folder)?;
+    let default = recording.folder().join("render");
+    let folder = output_folder(args.output.as_deref(), default)?;
     let rate = film_rate(&recording, &scene, &chosen);
     let completion = match draw(args, &recording, &folder, rate, &mut painter)? {
         Drawn::All(completion) => completion,

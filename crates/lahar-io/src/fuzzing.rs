@@ -15,8 +15,8 @@ pub fn checkpoint(bytes: &[u8]) {
     drop(checkpoint::read(bytes, bytes.len() as u64));
     let mut bytes = bytes.to_vec();
     let length = (bytes.len() as u64).to_le_bytes();
-    if let Some(told) = bytes.get_mut(checkpoint::LENGTH_AT) {
-        told.copy_from_slice(&length);
+    if let Some(stated) = bytes.get_mut(checkpoint::LENGTH_AT) {
+        stated.copy_from_slice(&length);
     }
     let read = checkpoint::read_with(&*bytes, bytes.len() as u64, Checksums::Ignored);
     if let Ok((_, checkpoint)) = read {

@@ -269,8 +269,8 @@ mod tests {
                 ] {
                     let surface = Surface::around(&places, volume(edge), Style::default()).unwrap();
                     assert_closed(&surface);
-                    let told = places.len() as f64 * volume(edge);
-                    let off = surface.volume() / told - 1.0;
+                    let expected = places.len() as f64 * volume(edge);
+                    let off = surface.volume() / expected - 1.0;
                     assert!(off.abs() < 0.02, "{name}, {edge}, {jitter}: {off}");
                 }
             }

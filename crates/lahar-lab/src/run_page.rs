@@ -11,7 +11,7 @@ use lahar_io::image::Picture;
 use lahar_io::output::{Record, Status, Table};
 
 use crate::numbers::{duration, with_prefix};
-use crate::run_plots::svg_plots;
+use crate::run_plots::{svg_plots, table_path};
 
 /// Largest film that is put into the page \[bytes\].
 const LARGEST_FILM: u64 = 12 << 20;
@@ -188,7 +188,7 @@ fn summary(record: &Record) -> String {
 
 /// A table of the limits of the time step, with the number of frames of each.
 fn limits(folder: &Path) -> Result<String, OutputError> {
-    let words = Table::words(&folder.join("diagnostics.csv"), "dt_limit")?;
+    let words = Table::words(&table_path(folder)?, "dt_limit")?;
     let mut counts: Vec<(String, usize)> = Vec::new();
     for word in words.into_iter().filter(|word| word != "none") {
         match counts.iter_mut().find(|(own, _)| *own == word) {

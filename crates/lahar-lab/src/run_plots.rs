@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use lahar_io::files::{OutputError, is_link, make_folder, write_file};
+use lahar_io::files::{OutputError, confined, is_link, output_folder, write_file};
 use lahar_io::output::{PROBE_PLOT, Table};
 
 use crate::plot::{Line, Plot};
@@ -85,7 +85,7 @@ const TOTAL: [&str; 3] = ["kinetic_energy", "elastic_energy", "potential_energy"
 /// If a run has no `diagnostics.csv`, or a file cannot be written.
 pub fn save_plots(runs: &[(String, PathBuf)], folder: &Path) -> Result<Vec<PathBuf>, OutputError> {
     let figures = svg_plots(runs)?;
-    make_folder(folder)?;
+    let folder = output_folder(Some(folder), PathBuf::new())?;
     let mut files = Vec::new();
     for (name, svg) in figures {
         let path = folder.join(format!("{name}.svg"));
@@ -102,7 +102,7 @@ pub fn save_plots(runs: &[(String, PathBuf)], folder: &Path) -> Result<Vec<PathB
 pub fn svg_plots(runs: &[(String, PathBuf)]) -> Result<Vec<(String, String)>, OutputError> {
     let mut tables = Vec::new();
     for (name, run) in runs {
-        tables.push((name.as_str(), Table::read(&run.join("diagnostics.csv"))?));
+        tables.push((name.as_str(), Table::read(&table_path(run)?)?));
     }
     let mut figures = Vec::new();
     for figure in FIGURES {
@@ -125,6 +125,15 @@ pub fn svg_plots(runs: &[(String, PathBuf)]) -> Result<Vec<(String, String)>, Ou
         figures.push((format!("{PROBE_PLOT}{probe}"), svg));
     }
     Ok(figures)
+}
+
+/// Returns the path of a run's `diagnostics.csv`, which must not be a link.
+pub(crate) fn table_path(run: &Path) -> Result<PathBuf, OutputError> {
+    confined(run, "diagnostics.csv").map_err(|what| OutputError {
+        path: run.to_owned(),
+        what,
+        usage: true,
+    })
 }
 
 /// Returns one plot per probe name, with one line per column and run.

@@ -326,10 +326,10 @@ pub(crate) fn read_with<R: Read>(
     if u32::from_le_bytes(bytes.array()?) != BYTE_ORDER {
         return Err("its bytes are in another order".to_owned());
     }
-    let told = u64::from_le_bytes(bytes.array()?);
-    if told != length {
-        return Err(if told > length {
-            format!("{CUT}: {length} of {told} bytes are there")
+    let stated = u64::from_le_bytes(bytes.array()?);
+    if stated != length {
+        return Err(if stated > length {
+            format!("{CUT}: {length} of {stated} bytes are there")
         } else {
             "something was added to it".to_owned()
         });
@@ -411,14 +411,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_reads_back() {
+    fn a_checkpoint_reads_back() {
         let bytes = bytes();
         assert!(bytes.len().is_multiple_of(4));
         assert_eq!(read_bytes(&bytes).unwrap(), example());
     }
 
     #[test]
-    fn any_cut_and_any_altered_byte_is_told() {
+    fn any_cut_and_any_altered_byte_is_noticed() {
         let bytes = bytes();
         for end in (0..2000).chain(bytes.len() - 2000..bytes.len()) {
             let why = read_bytes(&bytes[..end]).unwrap_err();
@@ -454,7 +454,7 @@ mod tests {
 
     /// Even with right checksums, sizes beyond the file are an error before memory is allocated.
     #[test]
-    fn sizes_that_lie_allocate_nothing() {
+    fn wrong_sizes_allocate_nothing() {
         let (header, checkpoint) = example();
         let good = write(Vec::new(), &header, &checkpoint).unwrap();
         let text = String::from_utf8_lossy(&good).into_owned();

@@ -47,7 +47,7 @@ pub struct OutputState {
 }
 
 impl OutputState {
-    /// Checks that all tables still begin with what they held; `run` is the run's folder. The film is not checked: a
+    /// Checks that all tables still begin with the same bytes; `run` is the run's folder. The film is not checked: a
     /// run can go on without its pictures ([`OutputState::forget_lost_film`]).
     ///
     /// # Errors

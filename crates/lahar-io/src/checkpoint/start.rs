@@ -6,9 +6,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use crate::files::{
-    Durability, OutputError, confined, is_link, make_folder, sync_folder, write_whole,
-};
+use crate::files::{Durability, OutputError, confined, make_folder, sync_folder, write_whole};
 use lahar_scene::error::SceneError;
 use lahar_scene::scene::{KeptFile, Limits, Scene};
 
@@ -41,7 +39,7 @@ const FILES: &str = "files";
 impl Start {
     /// Returns true if `folder` (`DIR/checkpoints`) holds the start of a run.
     pub fn is_in(folder: &Path) -> bool {
-        !is_link(&folder.join(NAME)) && Self::read(folder).is_ok()
+        Self::read(folder).is_ok()
     }
 
     /// Copies the files of `scene` to `folder`, writes `start.json` there, and waits until all is on the disk.
@@ -109,7 +107,7 @@ impl Start {
     /// # Errors
     /// If it is missing or damaged.
     pub fn read(folder: &Path) -> Result<Self, OutputError> {
-        let path = folder.join(NAME);
+        let path = confined(folder, NAME).map_err(|what| OutputError::usage(folder, what))?;
         let text = fs::read(&path)
             .map_err(|error| OutputError::usage(&path, format!("cannot be read: {error}")))?;
         serde_json::from_slice(&text)

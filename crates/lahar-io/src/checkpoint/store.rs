@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use lahar::Checkpoint;
 
 use super::format::{self, Header};
-use crate::files::{Durability, OutputError, sync_folder, write_whole};
+use crate::files::{Durability, OutputError, is_link, sync_folder, write_whole};
 
 const ENDING: &str = "checkpoint";
 
@@ -70,7 +70,9 @@ impl Store {
         };
         let mut all: Vec<(u64, PathBuf)> = entries
             .filter_map(|entry| {
-                let path = entry.ok()?.path();
+                // A link may lead anywhere.
+                let entry = entry.ok().filter(|entry| !is_link(&entry.path()))?;
+                let path = entry.path();
                 let is_one = path.extension()? == ENDING;
                 let frame = path.file_stem()?.to_str()?.parse().ok()?;
                 is_one.then_some((frame, path))

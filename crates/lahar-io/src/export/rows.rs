@@ -111,7 +111,7 @@ mod tests {
     use Component::{Of, One, Zero};
 
     #[test]
-    fn what_2d_lacks_is_filled_up() {
+    fn two_dimensions_are_filled_up_to_three() {
         assert_eq!(in_space(Field::Velocity, 2), [Of(0), Of(1), Zero]);
         let corner = |last| [Of(0), Of(1), Zero, Of(2), Of(3), Zero, Zero, Zero, last];
         assert_eq!(in_space(Field::Affine, 2), corner(Zero));

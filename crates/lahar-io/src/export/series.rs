@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_list_is_whole_after_every_entry_and_goes_on_where_it_is_cut() {
+    fn the_list_is_whole_after_every_entry_and_continues_where_it_is_cut() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("particles.pvd");
         let text = || fs::read_to_string(&path).unwrap();

@@ -38,6 +38,24 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     fs::create_dir_all(path).map_err(OutputError::at(path))
 }
 
+/// Makes the folder for a command's files: the one that the user named, which may be a link, or else `default`, a folder
+/// inside of a run, which may not.
+///
+/// # Errors
+/// If it cannot be made, or is a link inside of a run.
+pub fn output_folder(named: Option<&Path>, default: PathBuf) -> Result<PathBuf, OutputError> {
+    match named {
+        Some(folder) => {
+            fs::create_dir_all(folder).map_err(OutputError::at(folder))?;
+            Ok(folder.to_owned())
+        }
+        None => {
+            make_folder(&default)?;
+            Ok(default)
+        }
+    }
+}
+
 /// Refuses a link in the place of a folder or of a file that is kept.
 ///
 /// # Errors
@@ -90,8 +108,14 @@ mod tests {
         assert!(why.contains("frames is a link"), "{why}");
         let error = make_folder(&root.path().join("frames")).unwrap_err();
         assert!(error.usage && error.what.contains("is a link"), "{error}");
-        // A folder that the user names may be reached through links.
+        // A folder that the user names may be a link, or be reached through links.
         make_folder(&root.path().join("frames/below")).unwrap();
         assert!(elsewhere.path().join("below").is_dir());
+        let named = root.path().join("frames");
+        assert_eq!(
+            output_folder(Some(&named), PathBuf::new()).as_ref(),
+            Ok(&named)
+        );
+        assert!(output_folder(None, named).is_err());
     }
 }

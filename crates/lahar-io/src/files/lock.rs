@@ -16,7 +16,7 @@ impl Lock {
     /// Takes the lock at `path`, in the run's folder `run`.
     ///
     /// # Errors
-    /// If another run holds it, or it cannot be made.
+    /// If another run has locked it, or it cannot be made.
     pub(crate) fn take(path: &Path, run: &Path) -> Result<Self, OutputError> {
         refuse_link(path)?;
         let file = OpenOptions::new()

@@ -17,7 +17,7 @@ mod lock;
 mod names;
 mod whole;
 
-pub use confined::{confined, is_link, make_folder};
+pub use confined::{confined, is_link, make_folder, output_folder};
 pub use error::OutputError;
 pub(crate) use growing::GrowingFile;
 pub use growing::Length;

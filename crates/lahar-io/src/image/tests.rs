@@ -204,7 +204,7 @@ fn a_jittered_body_has_no_holes() {
 }
 
 #[test]
-fn walls_clip_and_nothing_is_drawn_for_what_is_not_a_number() {
+fn walls_clip_and_particles_without_a_position_are_not_drawn() {
     let renderer = Renderer::new(scenery(2), Style::default());
     let empty = renderer.render(&snapshot(2, &[], 0.01, &[]));
     let lost = renderer.render(&snapshot(
@@ -223,7 +223,7 @@ fn walls_clip_and_nothing_is_drawn_for_what_is_not_a_number() {
 }
 
 #[test]
-fn balls_are_lit_and_hide_what_is_behind() {
+fn balls_are_lit_and_hide_things_behind() {
     for up in [1, 2] {
         let renderer = Renderer::new(Scenery { up, ..scenery(3) }, Style::default());
         let picture = renderer.render(&snapshot(3, &[1.0, 0.5, 0.5], 0.008, &[1]));

@@ -214,7 +214,7 @@ impl RunFolder {
             Contents::Empty => None,
             Contents::Run if overwrite => None,
             Contents::Run => Some(format!(
-                "there is a run in this folder already; `lahar resume {}` goes on with it, `--overwrite` replaces it, or choose another folder",
+                "there is a run in this folder already; `lahar resume {}` continues it, `--overwrite` replaces it, or choose another folder",
                 path.display()
             )),
             Contents::ForeignRecord => Some(
@@ -222,7 +222,7 @@ impl RunFolder {
                     .to_owned(),
             ),
             Contents::Other => Some(
-                "this folder holds something that is not a run; choose an empty or a new one".to_owned(),
+                "this folder contains files that are not a run's; choose an empty or a new one".to_owned(),
             ),
         };
         if let Some(problem) = problem {

@@ -1,5 +1,6 @@
 //! `meshes/MATERIAL/000000.ply`: surfaces, one folder per material, and a list by time for ParaView.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::frame_name;
@@ -25,7 +26,7 @@ impl MeshFiles {
         materials: &[&str],
         formats: &[MeshFormat],
     ) -> Result<Self, OutputError> {
-        make_folder(folder)?;
+        fs::create_dir_all(folder).map_err(OutputError::at(folder))?;
         let mut series = Vec::new();
         for material in materials {
             let name = file_name(material);

@@ -159,7 +159,7 @@ impl Recording {
 /// # Errors
 /// If there is no run, or its record cannot be read.
 pub fn read_record(folder: &Path) -> Result<(PathBuf, Record), RecordingError> {
-    let path = folder.join("run.json");
+    let path = confined(folder, "run.json").map_err(|what| error(folder, what))?;
     let text = fs::read_to_string(&path).map_err(|why| match why.kind() {
         std::io::ErrorKind::NotFound => error(
             folder,
@@ -241,7 +241,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_run_wrote_comes_back_in_order() {
+    fn frames_come_back_in_order() {
         let folder = tempfile::tempdir().unwrap();
         run(folder.path(), 12);
         let recording = Recording::open(folder.path().join("run.json")).unwrap();
@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_replayed_is_said() {
+    fn unreadable_runs_are_named() {
         let folder = tempfile::tempdir().unwrap();
         let why = |path: &Path| Recording::open(path).unwrap_err().to_string();
         assert!(why(folder.path()).contains("not a run's folder"));
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_frame_is_named_with_what_is_wrong() {
+    fn a_damaged_frame_is_named_with_the_reason() {
         let folder = tempfile::tempdir().unwrap();
         run(folder.path(), 2);
         let recording = Recording::open(folder.path()).unwrap();

@@ -464,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn everything_asked_for_is_there() {
+    fn all_requested_files_are_written() {
         let root = tempfile::tempdir().unwrap();
         let folder = RunFolder::at(&root.path().join("run"), false).unwrap();
         let mut writer = Writer::start(plan(folder.clone()), None).unwrap();
@@ -524,12 +524,12 @@ mod tests {
     }
 
     #[test]
-    fn an_error_in_the_background_reaches_the_solver() {
+    fn an_error_in_the_background_reaches_the_caller() {
         let root = tempfile::tempdir().unwrap();
         let folder = RunFolder::at(&root.path().join("run"), false).unwrap();
         let mut writer = Writer::start(plan(folder.clone()), None).unwrap();
         fs::remove_dir_all(folder.frames()).unwrap();
-        // The first frame is taken before it is written, so it has no error yet.
+        // The first frame is only handed over, so it has no error yet.
         writer
             .frame(0, snapshot(0.5), Diagnostics::default(), Vec::new())
             .unwrap();
@@ -539,7 +539,7 @@ mod tests {
     }
 
     #[test]
-    fn films_play_in_real_time_unless_that_is_a_flash() {
+    fn films_play_in_real_time_unless_they_are_short() {
         assert_eq!(
             film_pace(60.0, 180),
             FilmPace {

@@ -234,11 +234,11 @@ pub fn measure(case: &Case, options: &Options) -> Result<Measurement, BenchError
     let (mut rates, mut substeps, mut time) = (Vec::new(), 0, 0.0);
     for _ in 0..options.runs.max(1) {
         let began = seconds();
-        let taken = until_sorted(&mut driver, 1, LEAST_SUBSTEPS)?;
-        let took = seconds() - began;
-        rates.push((particles * taken) as f64 / took);
-        substeps += taken;
-        time += took;
+        let count = until_sorted(&mut driver, 1, LEAST_SUBSTEPS)?;
+        let elapsed = seconds() - began;
+        rates.push((particles * count) as f64 / elapsed);
+        substeps += count;
+        time += elapsed;
     }
     let end = driver.simulation().phase_times();
     let waited = machine::waited().zip(waited).map(|(end, start)| {

@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn growth_is_drawn_over_what_varies() {
+    fn growth_is_drawn_over_the_quantity_that_varies() {
         let names = |results: &[Measurement]| {
             growth(results)
                 .iter()

@@ -64,13 +64,13 @@ impl Ffmpeg {
     /// If ffmpeg fails, with its message.
     pub(super) fn finish(mut self) -> io::Result<()> {
         drop(self.0.stdin.take());
-        let mut said = String::new();
+        let mut message = String::new();
         if let Some(errors) = &mut self.0.stderr {
-            errors.read_to_string(&mut said)?;
+            errors.read_to_string(&mut message)?;
         }
         match self.0.wait()?.success() {
             true => Ok(()),
-            false => Err(io::Error::other(format!("ffmpeg: {}", said.trim()))),
+            false => Err(io::Error::other(format!("ffmpeg: {}", message.trim()))),
         }
     }
 }
