@@ -448,7 +448,7 @@ mod tests {
     use lahar::material::{Corotated, lame};
     use lahar::{Data, Field, Isa, Material, Model, ParticleBatch, Setup, Simulation, TimeStep};
 
-    /// A spinning square of jelly that falls on nothing, with a dt that is too long for some of its frames.
+    /// A spinning square of jelly in free space, with a dt that is too long for some of its frames.
     fn stiff_jelly() -> Box<dyn Simulate> {
         let (lambda, mu) = lame(2e4, 0.3);
         let jelly = Material {

@@ -186,36 +186,31 @@ impl Live {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lahar::material::{Corotated, lame};
-    use lahar::{Material, Model, ParticleBatch, Setup, Simulate, Simulation, TimeStep};
-    use lahar_scene::driver::Schedule;
+    use lahar::Isa;
+    use lahar_scene::scene::Scene;
 
-    const FRAME_END: FrameEnd = FrameEnd::Rate(1.0);
-
-    /// A spinning square of jelly that falls on nothing, with a dt that is too long for some of its frames.
-    fn stiff_jelly() -> Box<dyn Simulate> {
-        let (lambda, mu) = lame(2e4, 0.3);
-        let jelly = Material {
-            name: "jelly".into(),
-            density: 500.0,
-            model: Model::Corotated(Corotated { lambda, mu }),
-        };
-        let mut setup = Setup::<2>::new(0.1, vec![jelly]);
-        setup.time_step = TimeStep::Fixed(0.025);
-        let places = (0..400).map(|i| [f64::from(i % 20), f64::from(i / 20)].map(|x| 0.05 * x));
-        let position: Vec<[f64; 2]> = places.collect();
-        let velocity = position.iter().map(|x| [0.5 - x[1], x[0] - 0.5]).collect();
-        let batch = ParticleBatch {
-            position,
-            velocity,
-            volume: vec![0.0025],
-            ..ParticleBatch::default()
-        };
-        Box::new(Simulation::<f32, 2>::new(setup, &[batch]).expect("the setup is valid"))
-    }
+    /// A spinning square of jelly in free space, with a dt that is too long for some of its frames.
+    const STIFF_JELLY: &str = r#"
+        dx = 0.1
+        dt = 0.025
+        frame_rate = 1.0
+        gravity = [0.0, 0.0]
+        [materials.jelly]
+        model = "corotated"
+        density = 500.0
+        youngs_modulus = 2e4
+        poisson_ratio = 0.3
+        [[bodies]]
+        material = "jelly"
+        shape = { box = { min = [0.0, 0.0], max = [1.0, 1.0] } }
+        sampling = "lattice"
+        spin = 1.0
+    "#;
 
     fn driver() -> Driver {
-        Driver::new(stiff_jelly(), Schedule::new(FRAME_END))
+        let scene = Scene::parse(STIFF_JELLY, "jelly.toml", &[]).expect("the scene is valid");
+        let built = scene.build(Isa::Portable).expect("the scene is valid");
+        Driver::of_scene(&scene, built.simulation)
     }
 
     #[test]
