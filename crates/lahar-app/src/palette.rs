@@ -3,10 +3,10 @@
 use eframe::egui::Color32;
 use lahar::{Data, Field, Snapshot};
 use lahar_io::image::{Color, body_color};
-use lahar_scene::scene::ColorBy;
+use lahar_scene::scene::{ColorBy, Look};
 
 use crate::color::{self, Range};
-use crate::scenes::{MaterialKind, SceneInfo, Swatch};
+use crate::scenes::{SceneInfo, Swatch};
 
 /// The usual background (Taichi's examples: 0x112F41).
 pub const BACKGROUND: Color32 = Color32::from_rgb(0x11, 0x2f, 0x41);
@@ -17,7 +17,7 @@ pub const JELLY: Color32 = Color32::from_rgb(0xed, 0x55, 0x3b);
 /// The color of snow (Taichi's examples: 0xEEEEF0).
 pub const SNOW: Color32 = Color32::from_rgb(0xee, 0xee, 0xf0);
 
-/// The colors of a second material of a kind, and of kinds without a color of their own.
+/// The colors of a second material of the same look, and of looks without a color of their own.
 const OTHERS: [Color32; 6] = [
     Color32::from_rgb(0xe9, 0xb4, 0x4c),
     Color32::from_rgb(0x8e, 0x7d, 0xbe),
@@ -34,7 +34,7 @@ pub(crate) fn background(info: &SceneInfo) -> Color32 {
 
 /// The colors that the entries of the legend start with. The person at the window may change them.
 pub fn palette(swatches: &[Swatch]) -> Vec<Color32> {
-    let mut used: Vec<MaterialKind> = vec![];
+    let mut used: Vec<Option<Look>> = vec![];
     let mut others = OTHERS.iter().cycle().copied();
     swatches
         .iter()
@@ -42,13 +42,13 @@ pub fn palette(swatches: &[Swatch]) -> Vec<Color32> {
             if let Some(color) = swatch.color {
                 return opaque(color);
             }
-            let first = !used.contains(&swatch.kind);
-            used.push(swatch.kind);
-            let own = match swatch.kind {
-                MaterialKind::Liquid => Some(LIQUID),
-                MaterialKind::Jelly => Some(JELLY),
-                MaterialKind::Snow => Some(SNOW),
-                MaterialKind::Dust | MaterialKind::Other => None,
+            let first = !used.contains(&swatch.look);
+            used.push(swatch.look);
+            let own = match swatch.look {
+                Some(Look::Liquid) => Some(LIQUID),
+                Some(Look::Solid) => Some(JELLY),
+                Some(Look::Snow) => Some(SNOW),
+                Some(Look::Dust) | None => None,
             };
             own.filter(|_| first)
                 .or_else(|| others.next())
@@ -124,20 +124,12 @@ mod tests {
 
     #[test]
     fn taichis_materials_have_taichis_colors_and_a_second_liquid_has_its_own() {
-        let swatch = |kind| Swatch {
+        let swatch = |look| Swatch {
             name: String::new(),
-            kind,
+            look: Some(look),
             color: None,
         };
-        let palette = palette(
-            &[
-                MaterialKind::Liquid,
-                MaterialKind::Jelly,
-                MaterialKind::Snow,
-                MaterialKind::Liquid,
-            ]
-            .map(swatch),
-        );
+        let palette = palette(&[Look::Liquid, Look::Solid, Look::Snow, Look::Liquid].map(swatch));
         assert_eq!(palette[..3], [LIQUID, JELLY, SNOW]);
         assert!(!palette[..3].contains(&palette[3]));
     }

@@ -11,7 +11,7 @@ use lahar_scene::scene::{Controls, Scene, SceneView};
 
 use crate::palette::palette;
 use crate::scenes::{
-    Changes, MaterialKind, OpenedScene, SceneCard, SceneContent, SceneInfo, SceneSource, Swatch,
+    Changes, OpenedScene, SceneCard, SceneContent, SceneInfo, SceneSource, Swatch,
 };
 
 /// The scenes that ship with lahar, scene files, and the folders of finished runs.
@@ -170,30 +170,15 @@ fn title(view: &SceneView, name: &str) -> String {
     }
 }
 
-/// The kind of the materials of a model.
-fn material_kind(model: &str) -> MaterialKind {
-    match model {
-        "fluid" => MaterialKind::Liquid,
-        "corotated" | "neo_hookean" => MaterialKind::Jelly,
-        "snow" => MaterialKind::Snow,
-        "none" => MaterialKind::Dust,
-        _ => MaterialKind::Other,
-    }
-}
-
 /// The entries of the legend: the materials, then the bodies that have colors of their own. With them comes the entry of
 /// each body, by number.
 fn swatches(view: &SceneView) -> (Vec<Swatch>, Vec<usize>) {
     let material = |name: &str| view.materials.iter().position(|m| m.name == name);
-    let kind = |index: Option<usize>| {
-        index.map_or(MaterialKind::Other, |i| {
-            material_kind(&view.materials[i].model)
-        })
-    };
+    let look = |index: Option<usize>| index.and_then(|index| view.materials[index].look());
     let mut swatches: Vec<Swatch> = (view.materials.iter())
         .map(|material| Swatch {
             name: material.name.clone(),
-            kind: material_kind(&material.model),
+            look: material.look(),
             color: material.color,
         })
         .collect();
@@ -205,7 +190,7 @@ fn swatches(view: &SceneView) -> (Vec<Swatch>, Vec<usize>) {
             Some(_) => {
                 swatches.push(Swatch {
                     name: body.name.clone(),
-                    kind: kind(material),
+                    look: look(material),
                     color: body.color,
                 });
                 swatches.len() - 1

@@ -3,7 +3,7 @@
 use lahar_io::image::Picture;
 use lahar_io::output::Recording;
 use lahar_scene::driver::Driver;
-use lahar_scene::scene::{BodyView, Camera, ColliderInfo, Controls, Setting};
+use lahar_scene::scene::{BodyView, Camera, ColliderInfo, Controls, Look, Setting};
 
 /// A scene as lists show it.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,30 +18,14 @@ pub struct SceneCard {
     pub dimension: usize,
 }
 
-/// The kind of a material, which decides on its color where the scene gives none.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum MaterialKind {
-    /// Water and what flows like it.
-    Liquid,
-    /// An elastic solid.
-    Jelly,
-    /// Snow of any density.
-    Snow,
-    /// Loose particles without stress.
-    Dust,
-    /// Any other material.
-    #[default]
-    Other,
-}
-
 /// An entry of the legend: a material, or a body that has a color of its own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Swatch {
     /// The material's name or the body's.
     pub name: String,
-    /// The kind of the material.
-    pub kind: MaterialKind,
-    /// The color that the scene gives; `None`: the color of the kind.
+    /// The look of the material; `None` if its model is unknown.
+    pub look: Option<Look>,
+    /// The color that the scene gives; `None`: the usual color of the look.
     pub color: Option<[u8; 3]>,
 }
 

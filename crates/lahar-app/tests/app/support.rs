@@ -6,10 +6,10 @@ use lahar::{
     Transfer, WallStyle,
 };
 use lahar_app::scenes::{
-    Changes, MaterialKind, OpenedScene, SceneCard, SceneContent, SceneInfo, SceneSource, Swatch,
+    Changes, OpenedScene, SceneCard, SceneContent, SceneInfo, SceneSource, Swatch,
 };
 use lahar_scene::driver::{Driver, FrameEnd, Schedule};
-use lahar_scene::scene::{BodyView, Camera, Controls, Setting, SettingValue};
+use lahar_scene::scene::{BodyView, Camera, Controls, Look, Setting, SettingValue};
 
 /// Blocks of water in 2D and 3D, and a scene that cannot be opened.
 pub(crate) struct TestScenes;
@@ -62,7 +62,7 @@ impl SceneSource for TestScenes {
             frames: None,
             swatches: vec![Swatch {
                 name: "water".into(),
-                kind: MaterialKind::Liquid,
+                look: Some(Look::Liquid),
                 color: None,
             }],
             body_swatches: vec![0],

@@ -13,6 +13,7 @@ use super::controls::{Controls, read_controls};
 use super::document::{Sources, Span, Value, from_json};
 use super::key::Kind;
 use super::keys;
+use super::material::Look;
 use super::read::Reader;
 use super::space::vector_in_3d;
 
@@ -54,6 +55,13 @@ pub struct MaterialView {
     pub model: String,
     /// Its color, if the scene or its preset gives one.
     pub color: Option<[u8; 3]>,
+}
+
+impl MaterialView {
+    /// The look of the material; `None` if its model is unknown, as in runs of other versions.
+    pub fn look(&self) -> Option<Look> {
+        Look::of_model(&self.model)
+    }
 }
 
 /// A body as windows and pictures show it.
