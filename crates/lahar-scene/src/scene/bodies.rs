@@ -1,8 +1,9 @@
 //! Reads bodies: their shape or particle list, their material and their motion at the start.
 
+use super::choices::{SAMPLINGS, START_PRESSURES, VOLUMES};
 use super::files::Files;
 use super::formula::Variables;
-use super::plan::{Body, Source, StartPressure, Volume};
+use super::plan::{Body, Source, Volume};
 use super::read::Reader;
 use super::shapes::{LARGEST_PART_COUNT, read_shape};
 use crate::error::{SceneError, nearest};
@@ -55,14 +56,7 @@ pub(super) fn read_body<const D: usize>(
         velocity_spread: table.opt_vector("velocity_spread").unwrap_or([0.0; D]),
         gradient: read_velocity_gradient(table)?,
         volume,
-        pressure: table.choice(
-            "pressure",
-            &[
-                ("auto", StartPressure::Automatic),
-                ("none", StartPressure::None),
-                ("hydrostatic", StartPressure::Hydrostatic),
-            ],
-        )?,
+        pressure: table.choice("pressure", &START_PRESSURES)?,
     })
 }
 
@@ -96,14 +90,7 @@ fn read_volume(table: &Reader<'_>, is_fluid: bool) -> Result<Volume, SceneError>
         return Ok(Volume::Particle(volume));
     }
     if table.has("volume") {
-        return table.choice(
-            "volume",
-            &[
-                ("even", Volume::Even),
-                ("alike", Volume::Source),
-                ("measured", Volume::Measured),
-            ],
-        );
+        return table.choice("volume", &VOLUMES);
     }
     Ok(if is_fluid {
         Volume::Even
@@ -141,7 +128,7 @@ fn read_shape_source<const D: usize>(
     table: &Reader<'_>,
     context: &BodyContext<'_, D>,
 ) -> Result<Source<D>, SceneError> {
-    let sampling = body.choice("sampling", &Sampling::ALL.map(|rule| (rule.name(), rule)))?;
+    let sampling = body.choice("sampling", &SAMPLINGS)?;
     let amounts: Vec<&str> = ["particles_per_cell", "spacing", "count"]
         .into_iter()
         .filter(|key| body.has(key))
@@ -160,7 +147,7 @@ fn read_shape_source<const D: usize>(
             "count",
             format!(
                 "\"count\" is for sampling = \"random\" or \"poisson\", this body has \"{}\"",
-                sampling.name()
+                body.text("sampling")?
             ),
         ));
     }

@@ -1,6 +1,7 @@
 //! The type [`Scene`]: reading, and what is known of a scene before it is built.
 
 use super::check;
+use super::choices::PRECISIONS;
 use super::colliders::{ColliderInfo, infos};
 use super::controls::{Controls, read_controls};
 use super::document::{Document, Span};
@@ -364,10 +365,7 @@ fn scene<const D: usize>(
         duration: reader.number("duration")?,
         frame_rate,
         substeps_per_frame,
-        precision: reader.choice(
-            "precision",
-            &[("f32", Precision::F32), ("f64", Precision::F64)],
-        )?,
+        precision: reader.choice("precision", &PRECISIONS)?,
         seed: reader.integer("seed")?,
         materials,
         bodies,

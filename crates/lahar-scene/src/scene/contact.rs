@@ -1,16 +1,9 @@
 //! Reads the contact of a wall or collider with the material.
 
+use super::choices::CONTACTS;
 use super::read::Reader;
 use crate::error::SceneError;
 use lahar::Contact;
-
-/// The words for contacts, without friction.
-const CONTACTS: [(&str, Contact); 4] = [
-    ("sticky", Contact::Sticky),
-    ("slip", Contact::Slip { friction: 0.0 }),
-    ("separate", Contact::Separate { friction: 0.0 }),
-    ("open", Contact::Open),
-];
 
 /// Reads a contact that is a word, or a table with a word and friction; `None` if the key is absent.
 pub(super) fn opt_contact(table: &Reader<'_>, key: &str) -> Result<Option<Contact>, SceneError> {

@@ -1,5 +1,6 @@
 //! Reads the domain: its walls, and the boxes that keep particles in.
 
+use super::choices::{self, WALL_STYLES};
 use super::contact::opt_contact;
 use super::read::Reader;
 use crate::error::SceneError;
@@ -9,9 +10,6 @@ use lahar::{Contact, Cushion, Domain, Sides, WallStyle};
 
 /// Cells along an axis at most: block coordinates are 32-bit numbers.
 const LARGEST_CELL_COUNT: f64 = 1e9;
-
-/// Layers of nodes that walls of the style "nodes" take, if the scene does not say.
-const USUAL_PADDING: u64 = 3;
 
 /// Names of the sides, by axis.
 const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], ["back", "front"]];
@@ -139,16 +137,12 @@ fn fitting_dx(sides: &[f64], dx: f64, wanted: impl Fn(f64) -> bool) -> Option<f6
 
 /// Reads the key `walls`: a word for all sides, or a table by side.
 fn read_walls<const D: usize>(domain: &Reader<'_>) -> Result<([Sides; D], WallStyle), SceneError> {
-    if domain.opt_text("walls") == Some("periodic") {
-        return Ok(([Sides::Periodic; D], WallStyle::Plane));
-    }
     let Some(walls) = domain.opt_table("walls") else {
-        let contact =
-            opt_contact(domain, "walls")?.ok_or_else(|| domain.error("there are no walls"))?;
-        let sides = Sides::Walls {
+        let contact = domain.choice("walls", &choices::SIDES)?;
+        let sides = contact.map_or(Sides::Periodic, |contact| Sides::Walls {
             low: contact,
             high: contact,
-        };
+        });
         return Ok(([sides; D], WallStyle::Plane));
     };
     let other = opt_contact(&walls, "contact")?.unwrap_or(Contact::Separate { friction: 0.0 });
@@ -167,13 +161,14 @@ fn read_walls<const D: usize>(domain: &Reader<'_>) -> Result<([Sides; D], WallSt
             ));
         }
     }
-    let padding = walls.opt_integer("padding");
-    let nodes = WallStyle::Nodes {
-        padding: padding.unwrap_or(USUAL_PADDING) as u32,
-    };
-    let style = walls.choice("style", &[("plane", WallStyle::Plane), ("nodes", nodes)])?;
-    if style == WallStyle::Plane && padding.is_some() {
-        return Err(walls.error_at_key("padding", "\"padding\" is for style = \"nodes\" only"));
+    let given = walls.opt_integer("padding");
+    let mut style = walls.choice("style", &WALL_STYLES)?;
+    match (&mut style, given) {
+        (WallStyle::Nodes { padding }, Some(given)) => *padding = given as u32,
+        (WallStyle::Plane, Some(_)) => {
+            return Err(walls.error_at_key("padding", "\"padding\" is for style = \"nodes\" only"));
+        }
+        (_, None) => {}
     }
     Ok((sides, style))
 }

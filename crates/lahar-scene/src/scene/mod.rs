@@ -29,6 +29,7 @@ mod build;
 mod built;
 mod check;
 mod checked;
+mod choices;
 mod colliders;
 mod comparison;
 mod contact;

@@ -1,6 +1,7 @@
 //! Reads a checked document into a [`Plan`].
 
 use super::bodies::{BodyContext, read_body};
+use super::choices::{FORCE_FORMS, KERNELS, TRANSFERS};
 use super::colliders::read_colliders;
 use super::domain::{read_clamp, read_cushion, read_domain};
 use super::files::Files;
@@ -101,18 +102,8 @@ fn read_bodies<const D: usize>(
 
 /// Reads `kernel` and `force`, which must go together.
 fn read_kernel(scene: &Reader<'_>) -> Result<(Kernel, ForceForm), SceneError> {
-    let kernel = scene.choice(
-        "kernel",
-        &[
-            ("quadratic", Kernel::Quadratic),
-            ("cubic", Kernel::Cubic),
-            ("linear", Kernel::Linear),
-        ],
-    )?;
-    let force = scene.choice(
-        "force",
-        &[("mls", ForceForm::Mls), ("classic", ForceForm::Classic)],
-    )?;
+    let kernel = scene.choice("kernel", &KERNELS)?;
+    let force = scene.choice("force", &FORCE_FORMS)?;
     if kernel == Kernel::Linear && force == ForceForm::Mls {
         let error = scene.error_at(
             "kernel",
@@ -173,23 +164,16 @@ fn check_count<const D: usize>(
     Err(error.hint("use a larger dx, fewer particles_per_cell or smaller bodies"))
 }
 
-/// Part of FLIP in a particle's velocity, if the scene does not say.
-const USUAL_FLIP_BLEND: f64 = 0.99;
-
 /// Reads `transfer` and `flip_blend`.
 fn read_transfer(scene: &Reader<'_>) -> Result<Transfer, SceneError> {
-    let blend = scene.opt_number("flip_blend");
-    let flip = Transfer::Flip {
-        blend: blend.unwrap_or(USUAL_FLIP_BLEND),
-    };
-    let words = [
-        ("apic", Transfer::Apic),
-        ("pic", Transfer::Pic),
-        ("flip", flip),
-    ];
-    let transfer = scene.choice("transfer", &words)?;
-    if transfer != flip && blend.is_some() {
-        return Err(scene
+    let mut transfer = scene.choice("transfer", &TRANSFERS)?;
+    match (&mut transfer, scene.opt_number("flip_blend")) {
+        (_, None) => Ok(transfer),
+        (Transfer::Flip { blend }, Some(given)) => {
+            *blend = given;
+            Ok(transfer)
+        }
+        (Transfer::Apic | Transfer::Pic, Some(_)) => Err(scene
             .error_at_key(
                 "flip_blend",
                 "\"flip_blend\" is for transfer = \"flip\" only",
@@ -197,9 +181,8 @@ fn read_transfer(scene: &Reader<'_>) -> Result<Transfer, SceneError> {
             .hint(format!(
                 "this scene has transfer = \"{}\"",
                 scene.text("transfer")?
-            )));
+            ))),
     }
-    Ok(transfer)
 }
 
 /// Reads `dt`, `dt_max` and `cfl`.

@@ -1,5 +1,6 @@
 //! Reads shapes of bodies and colliders.
 
+use super::choices::UP_AXES;
 use super::files::Files;
 use super::read::Reader;
 use crate::error::SceneError;
@@ -222,7 +223,7 @@ fn read_mesh<const D: usize>(
     let Some(keys) = keys else {
         return Ok(mesh);
     };
-    let turn = keys.choice("up", &[("y", [0.0; 3]), ("z", [-90.0, 0.0, 0.0])])?;
+    let turn = keys.choice("up", &UP_AXES)?;
     let upright = mesh.transformed(Transform::new(
         [1.0; D],
         turn.map(f64::to_radians),

@@ -1,0 +1,164 @@
+//! Keys of probes.
+
+use crate::scene::key::WhenAbsent::{Required, Value, Words};
+use crate::scene::key::{Bound, Key, Kind, Section, key};
+
+pub(crate) static PROBE: Section = Section {
+    name: "probe",
+    header: "[[probes]]: exactly one besides name and rate",
+    keys: &[&[
+        key(
+            "name",
+            Kind::Text,
+            "",
+            Required,
+            "Name of its file, probes/NAME.csv: letters, digits, - and _.",
+        ),
+        key(
+            "rate",
+            Kind::Number(Bound::Positive),
+            "1/s",
+            Words("`frame_rate`"),
+            "How often it is read: at the end of the first substep at or after each moment.",
+        ),
+        key(
+            "pressure",
+            Kind::Table(&PRESSURE),
+            "",
+            Words("–"),
+            "Pressure at a point, or its mean over a plate.",
+        ),
+        key(
+            "velocity",
+            Kind::Table(&VELOCITY_PROBE),
+            "",
+            Words("–"),
+            "Velocity at a point.",
+        ),
+        key(
+            "height",
+            Kind::Table(&HEIGHT),
+            "",
+            Words("–"),
+            "Where the surface is.",
+        ),
+        key(
+            "front",
+            Kind::Table(&FRONT),
+            "",
+            Words("–"),
+            "How far the material has come along an axis.",
+        ),
+        key(
+            "force",
+            Kind::Table(&FORCE_PROBE),
+            "",
+            Words("–"),
+            "Mean force of the material on a wall between readings.",
+        ),
+    ]],
+};
+
+pub(crate) static PRESSURE: Section = Section {
+    name: "pressure",
+    header: "pressure = { .. } in [[probes]]",
+    keys: &[&[
+        key(
+            "at",
+            Kind::Vector,
+            "m",
+            Required,
+            "The point, on a wall or inside; the middle of the plate.",
+        ),
+        key(
+            "radius",
+            Kind::Number(Bound::Positive),
+            "m",
+            Words("2 `dx`"),
+            "How far away particles count.",
+        ),
+        key(
+            "normal",
+            Kind::Vector,
+            "",
+            Words("a point, no plate"),
+            "Direction across the plate, of any length.",
+        ),
+        key(
+            "width",
+            Kind::Number(Bound::Positive),
+            "m",
+            Words("a point, no plate"),
+            "Length of the plate in 2D, diameter of the disc in 3D.",
+        ),
+    ]],
+};
+
+pub(crate) static VELOCITY_PROBE: Section = Section {
+    name: "velocity at a point",
+    header: "velocity = { .. } in [[probes]]",
+    keys: &[&[
+        key("at", Kind::Vector, "m", Required, "The point."),
+        key(
+            "radius",
+            Kind::Number(Bound::Positive),
+            "m",
+            Words("2 `dx`"),
+            "How far away particles count.",
+        ),
+    ]],
+};
+
+const AXIS: Kind = Kind::Word(&["x", "y", "z"]);
+
+const UP: Key = key("up", AXIS, "", Value("\"y\""), "The axis that points up.");
+
+pub(crate) static HEIGHT: Section = Section {
+    name: "height",
+    header: "height = { .. } in [[probes]]",
+    keys: &[&[
+        key(
+            "at",
+            Kind::Vector,
+            "m",
+            Words("the mean over the domain: filled volume over area"),
+            "Any point of the column.",
+        ),
+        UP,
+    ]],
+};
+
+pub(crate) static FRONT: Section = Section {
+    name: "front",
+    header: "front = { .. } in [[probes]]",
+    keys: &[&[
+        key("along", AXIS, "", Value("\"x\""), "The axis it runs along."),
+        key(
+            "towards",
+            Kind::Word(&["high", "low"]),
+            "",
+            Value("\"high\""),
+            "Towards which end of it.",
+        ),
+        key(
+            "depth",
+            Kind::Number(Bound::Positive),
+            "m",
+            Required,
+            "The last column of one cell that is deeper counts.",
+        ),
+        UP,
+    ]],
+};
+
+pub(crate) static FORCE_PROBE: Section = Section {
+    name: "force on a wall",
+    header: "force = { .. } in [[probes]]",
+    keys: &[&[key(
+        "on",
+        Kind::Text,
+        "",
+        Required,
+        "A wall of the domain: `left`, `right`, `bottom`, `top`, `back` or `front`; or a collider by its name.",
+    )]],
+};
