@@ -42,9 +42,9 @@ const CHUNK: usize = 1 << 16;
 pub struct Header {
     /// Version of the program that wrote the checkpoint.
     pub lahar: String,
-    /// 2 or 3.
+    /// Dimension: 2 or 3.
     pub dimension: usize,
-    /// "f32" or "f64".
+    /// Precision: "f32" or "f64".
     pub precision: String,
     /// Name of the instruction set in use.
     pub isa: String,

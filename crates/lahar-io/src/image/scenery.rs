@@ -8,7 +8,7 @@ use super::palette::{BACKGROUND, COLLIDER, Color, model_colors};
 /// The parts of a scene that a renderer needs besides the particles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenery {
-    /// 2 or 3.
+    /// Dimension: 2 or 3.
     pub dimension: usize,
     /// Lower and upper corner of the box shown \[m\]: the domain, or the particles and a margin around them.
     pub bounds: ([f64; 3], [f64; 3]),

@@ -38,9 +38,9 @@ pub struct Record {
     pub scene: serde_json::Value,
     /// Seed of the scene's random numbers.
     pub seed: u64,
-    /// 2 or 3.
+    /// Dimension: 2 or 3.
     pub dimension: usize,
-    /// "f32" or "f64".
+    /// Precision: "f32" or "f64".
     pub precision: String,
     /// Instruction set that computed.
     pub isa: String,

@@ -21,7 +21,7 @@ const UNDER_WAY: usize = 2;
 pub struct OutputPlan {
     /// Folder of the run.
     pub folder: RunFolder,
-    /// 2 or 3.
+    /// Dimension: 2 or 3.
     pub dimension: usize,
     /// Formats of particles; each frame gets one file per format.
     pub formats: Vec<Format>,

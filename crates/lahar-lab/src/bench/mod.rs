@@ -142,7 +142,7 @@ pub struct Nanoseconds {
 pub struct Measurement {
     /// Name of the case.
     pub case: String,
-    /// "f32" or "f64".
+    /// Precision: "f32" or "f64".
     pub precision: String,
     /// Name of the instruction set in use.
     pub isa: String,
