@@ -26,9 +26,9 @@ pub struct ParticleState<const D: usize> {
     pub mass: f64,
     /// Rest volume \[m³; m² in 2D\].
     pub volume0: f64,
-    /// Position \[m\].
+    /// Position of the particle \[m\].
     pub position: [f64; D],
-    /// Velocity \[m/s\].
+    /// Velocity of the particle \[m/s\].
     pub velocity: [f64; D],
     /// Affine velocity matrix C \[1/s\], `[i][j]` = ∂v_i/∂x_j.
     pub affine: [[f64; D]; D],

@@ -1,6 +1,6 @@
 //! The trait that every constitutive model implements.
 
-use super::fluid::FluidModel;
+use super::fluid::model::FluidModel;
 use super::strain::Strain;
 use crate::math::{Matrix, Real};
 

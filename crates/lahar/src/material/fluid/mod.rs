@@ -11,7 +11,7 @@
 //! | `volume_rule.rs` | where J comes from |
 //! | `storage.rs` | what the engine does with fluids only |
 
-mod model;
+pub(super) mod model;
 pub mod rheology;
 mod storage;
 mod volume_rule;
