@@ -533,7 +533,18 @@ pub(crate) fn accepts(kind: Kind, value: &Value) -> bool {
         Kind::Flag => matches!(value, Value::Flag(_)),
         Kind::Integer(..) => matches!(value, Value::Integer(_)),
         Kind::Table(_) | Kind::Materials => matches!(value, Value::Table(_)),
-        _ => matches!(value, Value::List(_)),
+        Kind::Vector
+        | Kind::Formulas(_)
+        | Kind::Rotation
+        | Kind::Matrix
+        | Kind::Points
+        | Kind::Interval
+        | Kind::Size
+        | Kind::Words(_)
+        | Kind::Fields
+        | Kind::OneOf(_)
+        | Kind::Tables(_)
+        | Kind::Later => matches!(value, Value::List(_)),
     }
 }
 

@@ -75,3 +75,6 @@ pub(super) const START_PRESSURES: [(&str, StartPressure); 3] = [
 
 /// Axes of a mesh file that may point up, with the turn that brings them to y \[degrees\].
 pub(super) const UP_AXES: [(&str, [f64; 3]); 2] = [("y", [0.0; 3]), ("z", [-90.0, 0.0, 0.0])];
+
+/// Ends of an axis that a front may run towards; true for the upper one.
+pub(super) const ENDS: [(&str, bool); 2] = [("high", true), ("low", false)];

@@ -1,14 +1,31 @@
 //! Reads forces, and estimates the accelerations that they cause.
 
 use super::formula::{Formulas, Variables};
+use super::key::words;
 use super::read::Reader;
 use crate::error::SceneError;
 use lahar::geometry::Bounds;
 use lahar::{Force, Pull};
 use std::sync::Arc;
 
-/// The keys that say what kind of force a table is.
-const KINDS: [&str; 5] = ["acceleration", "central", "vortex", "drag", "damping"];
+/// The kinds of forces.
+#[derive(Clone, Copy)]
+enum Kind {
+    Acceleration,
+    Central,
+    Vortex,
+    Drag,
+    Damping,
+}
+
+/// The key of each kind; a force has one of them.
+const KINDS: [(&str, Kind); 5] = [
+    ("acceleration", Kind::Acceleration),
+    ("central", Kind::Central),
+    ("vortex", Kind::Vortex),
+    ("drag", Kind::Drag),
+    ("damping", Kind::Damping),
+];
 
 /// Reads gravity and the forces. Returns the constant part of gravity, and all other accelerations as forces.
 pub(crate) fn read_forces<const D: usize>(
@@ -28,21 +45,26 @@ pub(crate) fn read_forces<const D: usize>(
 }
 
 fn read_force<const D: usize>(table: &Reader<'_>, dx: f64) -> Result<Force<D>, SceneError> {
-    let given: Vec<&str> = KINDS.into_iter().filter(|kind| table.has(kind)).collect();
-    let kind = match given[..] {
-        [kind] => kind,
+    let given: Vec<_> = (KINDS.into_iter())
+        .filter(|(key, _)| table.has(key))
+        .collect();
+    let (key, kind) = match given[..] {
+        [given] => given,
         [] => {
             return Err(table
                 .error("this force does nothing")
-                .hint(format!("give one of: {}", KINDS.join(", "))));
+                .hint(format!("give one of: {}", words(&KINDS).join(", "))));
         }
-        [first, second, ..] => {
+        [(first, _), (second, _), ..] => {
             return Err(table
                 .error_at_key(second, format!("this force has \"{first}\" already"))
                 .hint("make a second [[forces]] of it"));
         }
     };
-    let inner = table.opt_table(kind);
+    let inner = || {
+        (table.opt_table(key))
+            .ok_or_else(|| table.error_at(key, format!("\"{key}\" must be a table")))
+    };
     let pull = |inner: &Reader<'_>| -> Result<Pull<D>, SceneError> {
         Ok(Pull {
             center: inner.vector("center")?,
@@ -52,9 +74,10 @@ fn read_force<const D: usize>(table: &Reader<'_>, dx: f64) -> Result<Force<D>, S
             softening: inner.opt_number("softening").unwrap_or(dx),
         })
     };
-    Ok(match (kind, inner) {
-        ("central", Some(inner)) => Force::Central(pull(&inner)?),
-        ("vortex", Some(inner)) => {
+    Ok(match kind {
+        Kind::Central => Force::Central(pull(&inner()?)?),
+        Kind::Vortex => {
+            let inner = inner()?;
             let axis = inner.opt_vector::<3>("axis").unwrap_or([0.0, 0.0, 1.0]);
             let length = axis.iter().map(|n| n * n).sum::<f64>().sqrt();
             if !(length > 0.0 && length.is_finite()) {
@@ -65,15 +88,18 @@ fn read_force<const D: usize>(table: &Reader<'_>, dx: f64) -> Result<Force<D>, S
                 axis: axis.map(|n| n / length),
             }
         }
-        ("drag", Some(inner)) => Force::Drag {
-            rate: inner.number("rate")?,
-            velocity: inner.vector("velocity")?,
-        },
-        ("damping", _) => Force::Drag {
+        Kind::Drag => {
+            let inner = inner()?;
+            Force::Drag {
+                rate: inner.number("rate")?,
+                velocity: inner.vector("velocity")?,
+            }
+        }
+        Kind::Damping => Force::Drag {
             rate: table.number("damping")?,
             velocity: [0.0; D],
         },
-        _ => Force::Field(Arc::new(
+        Kind::Acceleration => Force::Field(Arc::new(
             table.formulas::<D>("acceleration", Variables::PlaceAndTime)?,
         )),
     })

@@ -1,11 +1,29 @@
 //! Reads probes.
 
+use super::choices::ENDS;
+use super::key::words;
 use super::read::Reader;
 use crate::error::SceneError;
 use lahar::{Gauge, Plate, Probe};
 
-/// The keys that say what a probe measures.
-const KINDS: [&str; 5] = ["pressure", "velocity", "height", "front", "force"];
+/// The kinds of probes.
+#[derive(Clone, Copy)]
+enum Kind {
+    Pressure,
+    Velocity,
+    Height,
+    Front,
+    Force,
+}
+
+/// The key of each kind; a probe has one of them.
+const KINDS: [(&str, Kind); 5] = [
+    ("pressure", Kind::Pressure),
+    ("velocity", Kind::Velocity),
+    ("height", Kind::Height),
+    ("front", Kind::Front),
+    ("force", Kind::Force),
+];
 
 /// Radius of a gauge of pressure or velocity, if the scene does not say \[cells\]: enough layers of particles to find
 /// the slope of the pressure on a wall, and to average over their noise. In a resting tank of jittered particles, a
@@ -53,34 +71,36 @@ fn read_gauge<const D: usize>(
     domain: bool,
     dx: f64,
 ) -> Result<Gauge<D>, SceneError> {
-    let given: Vec<&str> = KINDS.into_iter().filter(|kind| probe.has(kind)).collect();
-    let (kind, table) = match given[..] {
-        [kind] => (kind, probe.opt_table(kind)),
+    let given: Vec<_> = (KINDS.into_iter())
+        .filter(|(key, _)| probe.has(key))
+        .collect();
+    let (key, kind) = match given[..] {
+        [given] => given,
         [] => {
             return Err(probe
                 .error("this probe measures nothing")
-                .hint(format!("give one of: {}", KINDS.join(", "))));
+                .hint(format!("give one of: {}", words(&KINDS).join(", "))));
         }
-        [first, second, ..] => {
+        [(first, _), (second, _), ..] => {
             return Err(probe
                 .error_at_key(second, format!("this probe measures \"{first}\" already"))
                 .hint("make a second [[probes]] of it"));
         }
     };
-    let Some(table) = table else {
-        return Err(probe.error_at(kind, format!("\"{kind}\" must be a table")));
+    let Some(table) = probe.opt_table(key) else {
+        return Err(probe.error_at(key, format!("\"{key}\" must be a table")));
     };
     Ok(match kind {
-        "pressure" => Gauge::Pressure {
+        Kind::Pressure => Gauge::Pressure {
             at: table.vector("at")?,
             radius: table.opt_number("radius").unwrap_or(RADIUS_CELLS * dx),
             plate: read_plate(&table)?,
         },
-        "velocity" => Gauge::Velocity {
+        Kind::Velocity => Gauge::Velocity {
             at: table.vector("at")?,
             radius: table.opt_number("radius").unwrap_or(RADIUS_CELLS * dx),
         },
-        "height" => {
+        Kind::Height => {
             let column = table.opt_vector("at");
             if column.is_none() && !domain {
                 let error = table.error("without a domain there is no mean height");
@@ -93,10 +113,10 @@ fn read_gauge<const D: usize>(
                 column,
             }
         }
-        "force" => Gauge::Force {
+        Kind::Force => Gauge::Force {
             on: table.text("on")?.to_owned(),
         },
-        _ => {
+        Kind::Front => {
             if D == 3 && !domain {
                 return Err(
                     table.error("in 3D a front needs a domain: its depth is a mean across it")
@@ -114,7 +134,7 @@ fn read_gauge<const D: usize>(
             Gauge::Front {
                 along,
                 up,
-                rising: table.text("towards")? == "high",
+                rising: table.choice("towards", &ENDS)?,
                 depth: table.number("depth")?,
             }
         }

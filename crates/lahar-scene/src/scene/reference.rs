@@ -148,19 +148,25 @@ struct DocTable {
     keys: &'static [Key],
 }
 
+/// Returns true for two lists of the same keys.
+fn same(a: &[Key], b: &[Key]) -> bool {
+    let name = |key: &Key| (key.name, key.about);
+    a.iter().map(name).eq(b.iter().map(name))
+}
+
 /// The tables; keys that several models share are listed once.
 fn tables() -> Vec<DocTable> {
     let mut tables: Vec<DocTable> = Vec::new();
     for section in sections() {
         for keys in section.keys {
-            if tables.iter().any(|table| core::ptr::eq(table.keys, *keys)) {
+            if tables.iter().any(|table| same(table.keys, keys)) {
                 continue;
             }
-            let (name, header) = if core::ptr::eq(*keys, MATERIAL) {
+            let (name, header) = if same(keys, MATERIAL) {
                 ("material", "[materials.NAME], every model".to_owned())
-            } else if core::ptr::eq(*keys, ELASTIC) {
+            } else if same(keys, ELASTIC) {
                 let elastic = |model: &&SceneModel| {
-                    (model.section.keys.iter()).any(|keys| core::ptr::eq(*keys, ELASTIC))
+                    (model.section.keys.iter()).any(|keys| same(keys, ELASTIC))
                 };
                 let names: Vec<String> = (MODELS.iter().filter(elastic))
                     .map(|model| format!("`{}`", model.name))

@@ -1,7 +1,8 @@
 //! Keys of probes.
 
+use crate::scene::choices::ENDS;
 use crate::scene::key::WhenAbsent::{Required, Value, Words};
-use crate::scene::key::{Bound, Key, Kind, Section, key};
+use crate::scene::key::{Bound, Key, Kind, Section, key, words};
 
 pub(crate) static PROBE: Section = Section {
     name: "probe",
@@ -135,7 +136,7 @@ pub(crate) static FRONT: Section = Section {
         key("along", AXIS, "", Value("\"x\""), "The axis it runs along."),
         key(
             "towards",
-            Kind::Word(&["high", "low"]),
+            Kind::Word(&words(&ENDS)),
             "",
             Value("\"high\""),
             "Towards which end of it.",
