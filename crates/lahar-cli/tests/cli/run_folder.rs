@@ -1,5 +1,4 @@
-//! Run folders, their own and strangers': no command writes, empties or reads anything outside of one, and none
-//! replaces more than lahar wrote.
+//! Run folders: no command writes, empties or reads a file outside of one, and none replaces more than lahar wrote.
 
 use std::fs;
 use std::path::Path;
@@ -21,22 +20,22 @@ fn a_finished_run_with_a_film_is_extended() {
 
     let output = lahar(here, &["resume", "r", "--frames=9"]);
     code(&output, 0);
-    let said = errors(&output);
-    assert!(said.contains("from frame 6 of 9"), "{said}");
+    let message = errors(&output);
+    assert!(message.contains("from frame 6 of 9"), "{message}");
     assert!(film("r").len() > short_film.len());
 
     // Without the pictures so far the film begins later, and the old film is kept.
     fs::remove_file(here.join("lost/checkpoints/film")).unwrap();
     let output = lahar(here, &["resume", "lost", "--frames=9"]);
     code(&output, 0);
-    let said = errors(&output);
+    let message = errors(&output);
     assert!(
-        said.contains("from frame 6 of 9") && said.contains("video-to-000006.gif"),
-        "{said}"
+        message.contains("from frame 6 of 9") && message.contains("video-to-000006.gif"),
+        "{message}"
     );
     assert!(fs::read(here.join("lost/video-to-000006.gif")).unwrap() == short_film);
 
-    // A finished run none of whose checkpoints can be used is not replaced.
+    // A finished run without a usable checkpoint is not replaced.
     for checkpoint in checkpoints(&here.join("damaged")) {
         fs::write(checkpoint, "x").unwrap();
     }

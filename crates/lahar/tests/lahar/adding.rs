@@ -38,7 +38,7 @@ fn falling_ball<const D: usize>(material: usize, cells: usize, seed: u64) -> Par
     )
 }
 
-/// Adds `batches` one after the other, runs on, and returns all bits and what boundaries took.
+/// Adds `batches` one after the other, runs on, and returns all bits and the checkpoint at the end.
 fn bits_after<T: Instance<D>, const D: usize>(
     mut simulation: Simulation<T, D>,
     batches: &[ParticleBatch<D>],
