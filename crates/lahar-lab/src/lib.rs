@@ -3,7 +3,7 @@
 //!
 //! - [`method`] checks the method itself on any engine.
 //! - [`validate`] runs scenes and compares numbers with exact solutions, experiments and other programs.
-//! - [`bench`] measures particle-steps per second.
+//! - [`mod@bench`] measures particle-steps per second.
 //! - [`run_plots`] and [`run_page`] draw the measurements of runs, and join them to a page of HTML.
 //! - [`plot`] draws curves as SVG; [`numbers`] writes numbers for people.
 //!
