@@ -49,15 +49,16 @@
 //! | to do this | use |
 //! |---|---|
 //! | describe a scene: domain, walls, colliders, forces, method | [`Setup`] |
+//! | make shapes, and fill them with points | [`geometry`] |
 //! | add particles, at the start or later | [`ParticleBatch`], [`Simulation::add`] |
-//! | choose materials or write one | [`material::PRESETS`], [`Model`], [`material::law`] |
+//! | choose materials or write one | [`material::preset`], [`Model`], [`material::law`] |
 //! | take substeps, in any dimension and precision | [`Simulation`], [`Simulate`] |
 //! | compute frames that are tried again with a shorter time step if they fail | [`frame`] |
 //! | turn gravity, stir, make a fluid stiffer | [`Command`] |
 //! | look at particles and totals | [`Simulate::snapshot`], [`Simulate::diagnostics`] |
 //! | measure pressure, heights, fronts and forces | [`Probe`], [`Simulate::boundary_impulses`] |
 //! | save the state and go on with the same bits | [`Simulate::checkpoint`], [`Simulate::resume`] |
-//! | check a result against the plain equations | [`reference`] |
+//! | check a result against the plain equations | [`mod@reference`] |
 //!
 //! Units are SI; 2D is per meter of depth. Pressures count compression as positive. [`equations`] is the page of all
 //! equations: a line of code that is one of them ends with its number.
@@ -75,6 +76,8 @@
 mod array;
 pub mod boundary;
 mod dispatch;
+/// The equations of the method with their numbers. Formulas are in LaTeX.
+///
 #[doc = include_str!("../docs/equations.md")]
 pub mod equations {}
 pub mod error;

@@ -13,7 +13,7 @@ use crate::state::diagnostics::{self, Diagnostics};
 use crate::state::retry::{Retry, RetryPoint};
 use crate::state::workspace::Workspace;
 use crate::state::{State, add, probes, snapshot};
-use crate::step::{PhaseTimes, STAGE_COUNT, Substep, substep};
+use crate::step::{PhaseTimes, StageTimes, Substep, substep};
 use core::borrow::Borrow;
 
 /// A simulation in `D` dimensions with numbers of type `T`.
@@ -36,14 +36,7 @@ pub struct Simulation<T: Instance<D>, const D: usize> {
     workspace: Workspace<T, D>,
     /// The start of the frame, where one that fails begins again.
     retry_point: Option<RetryPoint<T, D>>,
-    times: Times,
-}
-
-/// Seconds that the stages of the substep have taken.
-#[derive(Default)]
-struct Times {
-    clock: Option<fn() -> f64>,
-    seconds: [f64; STAGE_COUNT],
+    times: StageTimes,
     /// Sorts before the clock was given.
     sorts_before: u64,
 }
@@ -92,7 +85,8 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
             state,
             workspace,
             retry_point: None,
-            times: Times::default(),
+            times: StageTimes::default(),
+            sorts_before: 0,
         })
     }
 
@@ -108,9 +102,8 @@ impl<T: Instance<D>, const D: usize> Simulation<T, D> {
 
     /// Takes one substep of the length and for the reason that are given.
     fn take_substep(&mut self, dt_and_limit: (f64, DtLimit)) -> Result<(), Failure> {
-        let times = (self.times.clock, &mut self.times.seconds);
         let (state, workspace) = (&mut self.state, &mut self.workspace);
-        substep(&self.scene, state, workspace, dt_and_limit, times)
+        substep(&self.scene, state, workspace, dt_and_limit, &mut self.times)
     }
 }
 
@@ -237,7 +230,7 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
     }
 
     fn resume(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
-        self.state = self.state.from_checkpoint(&self.scene, checkpoint)?;
+        self.state = self.state.read_checkpoint(&self.scene, checkpoint)?;
         self.workspace.rebuild(&self.scene, &mut self.state);
         self.retry_point = None;
         Ok(())
@@ -260,16 +253,13 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
     }
 
     fn set_clock(&mut self, clock: fn() -> f64) {
-        self.times = Times {
-            clock: Some(clock),
-            sorts_before: self.workspace.sorts,
-            ..Times::default()
-        };
+        self.times = StageTimes::new(clock);
+        self.sorts_before = self.workspace.sorts;
     }
 
     fn phase_times(&self) -> PhaseTimes {
         let mut times = PhaseTimes {
-            sorts: self.workspace.sorts - self.times.sorts_before,
+            sorts: self.workspace.sorts - self.sorts_before,
             ..PhaseTimes::default()
         };
         for (stage, seconds) in Substep::<T, D>::STAGES.iter().zip(self.times.seconds) {

@@ -13,7 +13,6 @@ pub enum Shape {
 
 impl Shape {
     /// Returns the number of entries in `dimension` dimensions.
-    #[expect(clippy::len_without_is_empty, reason = "no shape is empty")]
     pub const fn len(self, dimension: usize) -> usize {
         match self {
             Self::Scalar => 1,

@@ -25,12 +25,12 @@ pub(crate) struct Lattice<const D: usize> {
 
 impl<const D: usize> Lattice<D> {
     /// Converts a position \[m\] to cells from node 0.
-    pub(crate) fn to_cells(&self, x: [f64; D]) -> [f64; D] {
+    pub(crate) fn to_cells(self, x: [f64; D]) -> [f64; D] {
         core::array::from_fn(|axis| (x[axis] - self.origin[axis]) / self.dx)
     }
 
     /// Converts a place on `axis`, in cells from node 0, to a coordinate \[m\].
-    pub(crate) fn to_world(&self, axis: usize, cells: f64) -> f64 {
+    pub(crate) fn to_world(self, axis: usize, cells: f64) -> f64 {
         self.origin[axis] + self.dx * cells
     }
 

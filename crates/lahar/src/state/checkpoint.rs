@@ -1,7 +1,7 @@
 //! Checkpoints: the state of a simulation as named arrays.
 //!
 //! ```text
-//! State ──to_checkpoint──▶ Checkpoint ──from_checkpoint, which checks──▶ State
+//! State ──to_checkpoint──▶ Checkpoint ──read_checkpoint, which checks──▶ State
 //! ```
 //! A checkpoint holds the whole state and nothing that follows from it: no grid and no buffers. Rows keep their order and
 //! their blocks, so that a run goes on with the same bits. Reading trusts nothing: an array that is missing, of another
@@ -203,7 +203,7 @@ impl<T: Instance<D>, const D: usize> State<T, D> {
     ///
     /// # Errors
     /// Names an array that is not of such a state.
-    pub(crate) fn from_checkpoint(
+    pub(crate) fn read_checkpoint(
         &self,
         scene: &CheckedSetup<D>,
         checkpoint: Checkpoint,

@@ -197,7 +197,7 @@ mod tests {
     use crate::material::preset;
     use crate::setup::check::CheckedSetup;
     use crate::setup::{ParticleBatch, Setup};
-    use crate::step::{STAGE_COUNT, substep};
+    use crate::step::{StageTimes, substep};
 
     /// A column of water that has just begun to collapse.
     fn scene() -> CheckedSetup<2> {
@@ -223,7 +223,7 @@ mod tests {
     ) {
         for _ in 0..60 {
             let next = state.control.next();
-            let times = (None, &mut [0.0; STAGE_COUNT]);
+            let times = &mut StageTimes::default();
             substep(scene, state, workspace, next, times).expect("water runs");
         }
     }

@@ -23,9 +23,10 @@ use crate::instance::Instance;
 use crate::setup::check::CheckedSetup;
 use crate::state::State;
 use crate::state::workspace::Workspace;
-use times::Phase;
+use times::{Phase, STAGE_COUNT};
 
 pub use times::PhaseTimes;
+pub(crate) use times::StageTimes;
 
 /// The data that the stages of one substep work on.
 pub(crate) struct Substep<'a, T: Instance<D>, const D: usize> {
@@ -57,9 +58,6 @@ impl<T: Instance<D>, const D: usize> Stage<T, D> {
     }
 }
 
-/// How many stages there are.
-pub(crate) const STAGE_COUNT: usize = 11;
-
 impl<T: Instance<D>, const D: usize> Substep<'_, T, D> {
     /// The substep. A stage that has nothing to do returns at once.
     pub(crate) const STAGES: [Stage<T, D>; STAGE_COUNT] = [
@@ -77,8 +75,8 @@ impl<T: Instance<D>, const D: usize> Substep<'_, T, D> {
     ];
 }
 
-/// Takes one substep of `dt` \[s\], which `limit` has decided. With a clock, adds the seconds of each stage to
-/// `seconds`.
+/// Takes one substep of `dt` \[s\], which `limit` has decided. Adds the seconds of each stage to
+/// `times`.
 ///
 /// # Errors
 /// If a particle is lost; the state is that of the middle of the substep then.
@@ -87,9 +85,8 @@ pub(crate) fn substep<T: Instance<D>, const D: usize>(
     state: &mut State<T, D>,
     workspace: &mut Workspace<T, D>,
     (dt, limit): (f64, DtLimit),
-    (clock, seconds): (Option<fn() -> f64>, &mut [f64; STAGE_COUNT]),
+    times: &mut StageTimes,
 ) -> Result<(), Failure> {
-    let now = || clock.map_or(0.0, |clock| clock());
     let mut substep = Substep {
         start: state.control.time(),
         scene,
@@ -98,11 +95,11 @@ pub(crate) fn substep<T: Instance<D>, const D: usize>(
         dt,
         limit,
     };
-    let mut before = now();
-    for (stage, seconds) in Substep::<T, D>::STAGES.iter().zip(seconds) {
+    let mut before = times.now();
+    for (number, stage) in Substep::<T, D>::STAGES.iter().enumerate() {
         let result = (stage.run)(&mut substep);
-        let after = now();
-        *seconds += after - before;
+        let after = times.now();
+        times.seconds[number] += after - before;
         before = after;
         result?;
     }

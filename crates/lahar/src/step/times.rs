@@ -1,5 +1,32 @@
 //! Seconds by stage and by phase of the substep.
 
+/// Number of stages of the substep.
+pub(crate) const STAGE_COUNT: usize = 11;
+
+/// Seconds by stage, since a clock was given.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct StageTimes {
+    /// A function that returns seconds.
+    clock: Option<fn() -> f64>,
+    /// The seconds of each stage.
+    pub(crate) seconds: [f64; STAGE_COUNT],
+}
+
+impl StageTimes {
+    /// Begins to count at zero, by `clock`.
+    pub(crate) fn new(clock: fn() -> f64) -> Self {
+        Self {
+            clock: Some(clock),
+            seconds: [0.0; STAGE_COUNT],
+        }
+    }
+
+    /// Returns the present second; 0 without a clock.
+    pub(crate) fn now(&self) -> f64 {
+        self.clock.map_or(0.0, |clock| clock())
+    }
+}
+
 /// A part of the substep that times are told by: one or several stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Phase {
