@@ -81,6 +81,6 @@ def without_tests(text):
 
 
 def tracked():
-    """The files that Git tracks, by their path from the root."""
+    """The files that Git tracks, by their path from the root; links are left out."""
     listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True, text=True)
-    return [name for name in listed.stdout.split("\0") if name and (ROOT / name).exists()]
+    return [name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file() and not (ROOT / name).is_symlink()]

@@ -2,7 +2,7 @@
 //! number of threads.
 //!
 //! A change of the physics changes the bits. Look at pictures of the scenes, then record the new bits with
-//! `LAHAR_UPDATE=1 cargo test -p lahar-io --test io golden`.
+//! `LAHAR_UPDATE=1 cargo test -p lahar-scene --test scene golden`.
 
 use std::fmt::Write as _;
 use std::path::Path;
