@@ -18,6 +18,16 @@ use super::read::Reader;
 use super::space::vector_in_3d;
 
 /// A scene as windows and pictures show it. Vectors have three components; 2D ignores the third.
+///
+/// ```
+/// use lahar_scene::scene::{Scene, SceneView};
+///
+/// let scene = Scene::load("dam-break", &[])?;
+/// let view = scene.view();
+/// assert_eq!(view.materials[0].name, "water");
+/// assert_eq!(SceneView::recorded(&scene.resolved()), view);
+/// # Ok::<(), lahar_scene::error::SceneError>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneView {
     /// The title; may be empty.
