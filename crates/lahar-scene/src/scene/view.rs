@@ -9,6 +9,7 @@
 //! from its run are the same.
 
 use super::colliders::{ColliderInfo, colliders_of};
+use super::color_by::ColorBy;
 use super::controls::{Controls, read_controls};
 use super::document::{Sources, Span, Value, from_json};
 use super::key::Kind;
@@ -102,45 +103,6 @@ pub struct Camera {
     pub particle_radius: Option<f64>,
     /// The quantity that particles are colored by.
     pub color_by: ColorBy,
-}
-
-/// A quantity that particles are colored by.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ColorBy {
-    /// The particle's material.
-    #[default]
-    Material,
-    /// The particle's body.
-    Body,
-    /// The speed |v| \[m/s\].
-    Speed,
-    /// The pressure −tr σ/d \[Pa\].
-    Pressure,
-    /// The Jacobian J = V/V⁰.
-    Jacobian,
-    /// The density m/(J V⁰) \[kg/m³; kg/m² in 2D\].
-    Density,
-}
-
-impl ColorBy {
-    /// All quantities, in the order of [`Self::WORDS`].
-    pub const ALL: [Self; 6] = [
-        Self::Material,
-        Self::Body,
-        Self::Speed,
-        Self::Pressure,
-        Self::Jacobian,
-        Self::Density,
-    ];
-
-    /// Their words in scene files.
-    pub const WORDS: [&'static str; 6] = ["material", "body", "speed", "pressure", "J", "density"];
-
-    /// The quantity of a word in scene files.
-    pub fn from_word(word: &str) -> Option<Self> {
-        let place = Self::WORDS.iter().position(|known| *known == word)?;
-        Some(Self::ALL[place])
-    }
 }
 
 /// A key of a scene whose value a person may want to vary.
@@ -351,13 +313,5 @@ mod tests {
             SceneView::recorded(&serde_json::Value::Null),
             SceneView::default()
         );
-    }
-
-    #[test]
-    fn words_to_color_by_are_one_each() {
-        for (by, word) in ColorBy::ALL.into_iter().zip(ColorBy::WORDS) {
-            assert_eq!(ColorBy::from_word(word), Some(by));
-        }
-        assert_eq!(ColorBy::from_word("taste"), None);
     }
 }

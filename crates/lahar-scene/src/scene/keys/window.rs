@@ -1,8 +1,8 @@
 //! Keys of the camera and of the controls in the window.
 
+use crate::scene::color_by::ColorBy;
 use crate::scene::key::WhenAbsent::{Value, Words};
 use crate::scene::key::{Bound, Kind, Section, key, only_3d};
-use crate::scene::view::ColorBy;
 
 pub(crate) static CAMERA: Section = Section {
     name: "camera",
