@@ -13,7 +13,7 @@ use crate::particles::{Largest, Rows};
 use core::ops::Deref;
 use fearless_simd::{Level, Simd};
 
-/// What follows from the strain and the velocity gradient of one particle, in f64.
+/// The state of one particle, as it follows from its strain and velocity gradient, in f64.
 #[derive(Clone, Debug)]
 pub struct ParticleState<const D: usize> {
     /// J.

@@ -112,6 +112,12 @@ macro_rules! declare_models {
 
         /// Returns the names of all presets, grouped by model, each with a sentence on the substance
         /// and the source of its numbers.
+        ///
+        /// ```
+        /// let (name, about) = lahar::material::presets().next().unwrap();
+        /// assert_eq!(name, "water");
+        /// assert!(about.contains("998.2 kg/m³"));
+        /// ```
         pub fn presets() -> impl Iterator<Item = (&'static str, &'static str)> {
             core::iter::empty()
                 $(.chain($module::PRESETS.iter().map(|preset| (preset.name, preset.about))))*
@@ -188,6 +194,13 @@ pub(crate) const SHOWN_VARIABLES: &[Variable] = SHOWN.0.split_at(SHOWN.1).0;
 
 impl Model {
     /// Returns the internal variables that the model stores.
+    ///
+    /// ```
+    /// use lahar::Model;
+    /// use lahar::material::{PLASTIC_JACOBIAN, Snow};
+    ///
+    /// assert!(Model::Snow(Snow::default()).variables().contains(&PLASTIC_JACOBIAN));
+    /// ```
     pub fn variables(&self) -> &'static [Variable] {
         fn of<M: ConstitutiveModel<3>>(_: &M) -> &'static [Variable] {
             <M::Strain<f64> as Variables<f64, 3>>::TABLE

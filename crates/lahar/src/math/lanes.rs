@@ -1,64 +1,66 @@
-//! [`Real`] for vector registers: sixteen `f32` or eight `f64`, on whatever instruction set the
-//! token `S` stands for. The widths are the same on all of them, so that the order of work, and
-//! with it the result, does not depend on the machine.
+//! Vector registers: sixteen `f32` or eight `f64`, on the instruction set that the token `S` stands
+//! for. The widths are the same on all instruction sets, so that the order of operations, and with it
+//! the result, does not depend on the machine.
 
 use super::real::{Mask, Real, Register, Scalar};
 use core::ops::{Add, Mul};
 use fearless_simd::prelude::*;
 use fearless_simd::{f32x4, f32x8, f32x16, f64x4, f64x8, i32x16, mask32x16, mask64x8};
 
-/// Scalars that know their lane type on an instruction set.
+/// A scalar, with its vector register on each instruction set.
 pub trait Lanes: Scalar {
-    /// The lane type on the instruction set `S`.
+    /// The register on the instruction set `S`.
     type Of<S: Simd>: Register<Scalar = Self>;
-    /// How many numbers a lane value holds.
+    /// The number of lanes of a register.
     const WIDTH: usize;
-    /// `WIDTH` numbers from the start of `slice`.
+    /// Loads the first `WIDTH` numbers of `slice`.
     fn load<S: Simd>(simd: S, slice: &[Self]) -> Self::Of<S>;
-    /// Writes `WIDTH` numbers to the start of `slice`.
+    /// Stores a register to the first `WIDTH` numbers of `slice`.
     fn store<S: Simd>(value: Self::Of<S>, slice: &mut [Self]);
-    /// One number in every lane.
+    /// Returns a register with `value` in every lane.
     fn broadcast<S: Simd>(simd: S, value: Self) -> Self::Of<S>;
-    /// Writes `WIDTH` quads: `[a, b, c, d]` of lane 0, then of lane 1, ...
+    /// Stores `WIDTH` quads: `[a, b, c, d]` of lane 0, then of lane 1, ...
     fn store_quads<S: Simd>(quads: [Self::Of<S>; 4], slice: &mut [Self]);
-    /// Reads what [`Lanes::store_quads`] writes.
+    /// Loads what [`Lanes::store_quads`] stores.
     fn load_quads<S: Simd>(simd: S, slice: &[Self]) -> [Self::Of<S>; 4];
 
-    /// Writes the whole parts of `WIDTH` numbers to the start of `slice`; 0 for what is no number.
+    /// Stores the whole parts of the numbers to the first `WIDTH` entries of `slice`; 0 for NaN.
     fn store_whole<S: Simd>(value: Self::Of<S>, slice: &mut [i32]);
 
-    /// Four quads side by side: a stencil row of four nodes.
+    /// Four quads side by side: a row of four nodes of a stencil.
     type Row<S: Simd>: Row<S, Self>;
 
-    /// `sum += part`, number by number; whole quads.
+    /// Adds `part` to `sum`, number by number. The lengths are whole quads.
     fn add_quads<S: Simd>(simd: S, sum: &mut [Self], part: &[Self]);
-    /// `to = from`; whole quads. For rows that are too short for a call to the system's copy.
+    /// Copies `from` to `to`. The lengths are whole quads. It is for rows that are too short for a call
+    /// of the system's copy to pay off.
     fn copy_quads<S: Simd>(simd: S, to: &mut [Self], from: &[Self]);
 }
 
-/// Four nodes of four numbers each, as they lie in a tile.
+/// Four nodes of four numbers each, in the layout of a tile.
 pub trait Row<S: Simd, T>: Copy + Add<Output = Self> + Mul<Output = Self> {
-    /// From the first sixteen numbers of `slice`.
+    /// Loads the first sixteen numbers of `slice`.
     fn load(simd: S, slice: &[T]) -> Self;
-    /// To the first sixteen numbers of `slice`.
+    /// Stores the row to the first sixteen numbers of `slice`.
     fn store(self, slice: &mut [T]);
-    /// One number everywhere.
+    /// Returns a row with `value` everywhere.
     fn splat(simd: S, value: T) -> Self;
-    /// The quad at the start of `slice`, for each of the four nodes.
+    /// Returns the quad at the start of `slice` for each of the four nodes.
     fn repeat(simd: S, slice: &[T]) -> Self;
-    /// Number k at the start of `slice` in all of node k.
+    /// Returns the first four numbers of `slice`: number k in all of node k.
     fn spread(simd: S, slice: &[T]) -> Self;
-    /// `self * a + b`; fused but on the portable instruction set.
+    /// Returns `self * a + b`, fused on every instruction set but the portable one.
     fn mul_add(self, a: Self, b: Self) -> Self;
-    /// Adds `weight * self` to the first `nodes` nodes of `slice`, one node at a time or, if `by_pairs`, two;
-    /// fused but on the portable instruction set. Less of it lies across two lines of the cache than of a
-    /// whole row, and a node just written is read again without waiting.
+    /// Adds `weight * self` to the first `nodes` nodes of `slice`, one node at a time or, if `by_pairs`,
+    /// two; fused on every instruction set but the portable one. Fewer of these accesses straddle two
+    /// cache lines than accesses of a whole row would, and a node that was just written can be read
+    /// again without waiting.
     fn add_scaled(self, simd: S, weight: T, slice: &mut [T], nodes: usize, by_pairs: bool);
-    /// Whether there are registers for the rows of four particles at once.
+    /// True if there are enough registers for the rows of four particles at once.
     const ROOM_FOR_FOUR: bool;
-    /// The sum over the four nodes, to the first four numbers of `slice`.
+    /// Stores the sum over the four nodes to the first four numbers of `slice`.
     fn fold(self, slice: &mut [T]);
-    /// The same of each of four rows, to the first sixteen numbers of `slice`.
+    /// Stores the sums of each of four rows to the first sixteen numbers of `slice`.
     fn fold_four(rows: [Self; 4], slice: &mut [T]);
 }
 
@@ -248,7 +250,7 @@ fn whole_f32<S: Simd>(value: f32x16<S>, slice: &mut [i32]) {
     i32x16::truncate_from_precise(value).store_slice(&mut slice[..16]);
 }
 
-/// Number by number: few instruction sets convert eight at a time.
+/// Converts number by number: few instruction sets convert eight at a time.
 #[inline(always)]
 fn whole_f64<S: Simd>(value: f64x8<S>, slice: &mut [i32]) {
     for (whole, &x) in slice[..8].iter_mut().zip(value.as_slice()) {
@@ -324,7 +326,7 @@ impl<S: Simd> Row<S, f32> for f32x16<S> {
     }
 }
 
-/// `slice[..4] += weight node`
+/// Adds `weight * node` to the first four numbers of `slice`.
 #[inline(always)]
 fn add_node<S: Simd>(simd: S, weight: f32, node: f32x4<S>, slice: &mut [f32]) {
     let slice = &mut slice[..4];
@@ -332,7 +334,7 @@ fn add_node<S: Simd>(simd: S, weight: f32, node: f32x4<S>, slice: &mut [f32]) {
     SimdFloat::mul_add(f32x4::splat(simd, weight), node, sum).store_slice(slice);
 }
 
-/// `slice[..8] += weight pair`
+/// Adds `weight * pair` to the first eight numbers of `slice`.
 #[inline(always)]
 fn add_pair<S: Simd>(simd: S, weight: f32, pair: f32x8<S>, slice: &mut [f32]) {
     let slice = &mut slice[..8];
@@ -340,7 +342,7 @@ fn add_pair<S: Simd>(simd: S, weight: f32, pair: f32x8<S>, slice: &mut [f32]) {
     SimdFloat::mul_add(f32x8::splat(simd, weight), pair, sum).store_slice(slice);
 }
 
-/// Nodes 0 + 2 of two rows, and nodes 1 + 3 of them.
+/// Returns the sums of nodes 0 and 2 of two rows, and those of nodes 1 and 3.
 #[inline(always)]
 fn even_odd<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> (f32x8<S>, f32x8<S>) {
     let ((a_low, a_high), (b_low, b_high)) = (a.split(), b.split());
@@ -349,7 +351,7 @@ fn even_odd<S: Simd>(a: f32x16<S>, b: f32x16<S>) -> (f32x8<S>, f32x8<S>) {
     (a_even.combine(b_even), a_odd.combine(b_odd))
 }
 
-/// A row in `f64`: nodes 0 and 1, nodes 2 and 3.
+/// A row in `f64`: nodes 0 and 1, then nodes 2 and 3.
 #[derive(Clone, Copy, Debug)]
 pub struct F64Row<S: Simd>(f64x8<S>, f64x8<S>);
 

@@ -4,12 +4,12 @@ use super::real::Real;
 use super::vector::Vector;
 use core::ops::{Add, AddAssign, Index, IndexMut, Mul, Sub, SubAssign};
 
-/// Stored by columns: column `j` is the vector `self.0[j]`.
+/// A matrix, stored by columns: column `j` is the vector `self.0[j]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrix<R, const D: usize>(pub [Vector<R, D>; D]);
 
 impl<R: Real, const D: usize> Matrix<R, D> {
-    /// The matrix whose entry in row `i`, column `j` is `f(i, j)`.
+    /// Creates the matrix whose entry in row `i`, column `j` is `f(i, j)`.
     #[inline(always)]
     pub fn from_fn(mut f: impl FnMut(usize, usize) -> R) -> Self {
         let mut m = Self([Vector([f(0, 0); D]); D]);
@@ -22,29 +22,29 @@ impl<R: Real, const D: usize> Matrix<R, D> {
         }
         m
     }
-    /// `value` times the identity.
+    /// Returns `value` times the identity.
     #[inline(always)]
     pub fn scaled_identity(value: R) -> Self {
         let zero = value.zero();
         Self::from_fn(|i, j| if i == j { value } else { zero })
     }
-    /// The identity, in the lanes of `like`.
+    /// Returns the identity, in the lanes of `like`.
     #[inline(always)]
     pub fn identity(like: R) -> Self {
         Self::scaled_identity(like.one())
     }
-    /// The matrix with `diagonal` on its diagonal.
+    /// Returns the matrix with `diagonal` on its diagonal and zeros elsewhere.
     #[inline(always)]
     pub fn from_diagonal(diagonal: Vector<R, D>) -> Self {
         let zero = diagonal[0].zero();
         Self::from_fn(|i, j| if i == j { diagonal[i] } else { zero })
     }
-    /// Rows to columns.
+    /// Returns the transpose.
     #[inline(always)]
     pub fn transpose(self) -> Self {
         Self::from_fn(|i, j| self[(j, i)])
     }
-    /// Sum of the diagonal.
+    /// Returns the trace, the sum of the diagonal.
     #[inline(always)]
     pub fn trace(self) -> R {
         let mut sum = self[(0, 0)];
@@ -53,7 +53,7 @@ impl<R: Real, const D: usize> Matrix<R, D> {
         }
         sum
     }
-    /// Determinant, for `D` = 1, 2 or 3.
+    /// Returns the determinant, for `D` = 1, 2 or 3.
     #[inline(always)]
     pub fn determinant(self) -> R {
         let m = |i, j| self[(i, j)];
@@ -67,8 +67,8 @@ impl<R: Real, const D: usize> Matrix<R, D> {
             }
         }
     }
-    /// det(I + A) − 1 without the cancellation of forming I + A, for `D` = 1, 2 or 3: the sum of
-    /// A's principal invariants.
+    /// Returns det(I + A) − 1 for this matrix A, for `D` = 1, 2 or 3. It is computed as the sum of the
+    /// principal invariants of A, without the cancellation of forming I + A.
     #[inline(always)]
     pub fn determinant_of_identity_plus_minus_one(self) -> R {
         let m = |i, j| self[(i, j)];
@@ -81,7 +81,7 @@ impl<R: Real, const D: usize> Matrix<R, D> {
             }
         }
     }
-    /// Sum of the squares of all entries.
+    /// Returns the sum of the squares of all entries.
     #[inline(always)]
     pub fn squared_norm(self) -> R {
         let mut sum = self.0[0].dot(self.0[0]);
@@ -90,7 +90,7 @@ impl<R: Real, const D: usize> Matrix<R, D> {
         }
         sum
     }
-    /// The same matrix with its dimension under another name: for code that has matched on `D`.
+    /// Returns the same matrix with its dimension under another name, for code that has matched on `D`.
     #[inline(always)]
     pub fn resize<const E: usize>(self) -> Matrix<R, E> {
         Matrix::from_fn(|i, j| self[(i, j)])
@@ -142,7 +142,7 @@ impl<R: Real, const D: usize> SubAssign for Matrix<R, D> {
         *self = *self - other;
     }
 }
-/// Times a number.
+/// Multiplies by a number.
 impl<R: Real, const D: usize> Mul<R> for Matrix<R, D> {
     type Output = Self;
     #[inline(always)]

@@ -1,21 +1,22 @@
 //! Functions of 1 + e, from e.
 //!
-//! What is stored is the difference from rest, J − 1 and F − I, since it keeps small strains that
-//! drown in the rounding of the 1. These functions keep them too: near e = 0 each is accurate to a
-//! few units in the last place of its *result*.
+//! Particles store the difference from rest, J − 1 and F − I, because small strains would drown in the
+//! rounding of the 1. These functions preserve them too: near e = 0 each is accurate to a few units in
+//! the last place of its *result*.
 
 use super::real::{Mask, Real};
 
-/// ln(1 + e), for e > −1. Relative error: 3 ε.
+/// Returns ln(1 + e), for e > −1. Relative error: 3 ε.
 ///
-/// Within |e| ≤ ½ by the series of 2 artanh(e / (2 + e)), in lanes; beyond, number by number.
+/// Within |e| ≤ ½ it sums the series of 2 artanh(e / (2 + e)), in lanes; beyond, it works number by
+/// number.
 #[inline(always)]
 pub fn ln_1p<R: Real>(e: R) -> R {
     let (s, tail) = logarithm_series(e);
     near_or(e, s + s + tail, R::ln_1p_by_number)
 }
 
-/// e − ln(1 + e), for e > −1: ½e² and less near 0. Relative error: 4 ε.
+/// Returns e − ln(1 + e), for e > −1, which is about ½e² near 0. Relative error: 4 ε.
 #[inline(always)]
 pub fn minus_ln_1p<R: Real>(e: R) -> R {
     // e − 2s = e s
@@ -26,7 +27,7 @@ pub fn minus_ln_1p<R: Real>(e: R) -> R {
 /// ln(1 + e) = 2s + tail with s = e / (2 + e), the tail being of third order; for |e| ≤ ½.
 #[inline(always)]
 fn logarithm_series<R: Real>(e: R) -> (R, R) {
-    // s² ≤ 1/9: what is cut off is below 9^−TERMS of the sum.
+    // s² ≤ 1/9: the terms that are cut off are below 9^−terms of the sum.
     let terms = if R::EPSILON > 1e-10 { 8 } else { 16 };
     let s = e / (e + e.lit(2.0));
     let square = s * s;
@@ -37,7 +38,7 @@ fn logarithm_series<R: Real>(e: R) -> (R, R) {
     (s, s * square * sum)
 }
 
-/// `near` where |e| ≤ ½, else `far` of e. A lane's result depends on that lane alone.
+/// Returns `near` where |e| ≤ ½, else `far(e)`. The result of a lane depends on that lane alone.
 #[inline(always)]
 fn near_or<R: Real>(e: R, near: R, far: impl FnOnce(R) -> R) -> R {
     let is_far = e.abs().gt(e.lit(0.5));
@@ -48,9 +49,9 @@ fn near_or<R: Real>(e: R, near: R, far: impl FnOnce(R) -> R) -> R {
     }
 }
 
-/// (1 + e)^`exponent` − 1, for e > −1. Relative error: about 2 `|exponent|` ε.
+/// Returns (1 + e)^`exponent` − 1, for e > −1. Relative error: about 2 `|exponent|` ε.
 ///
-/// By multiplications if the exponent is a small whole number, else number by number.
+/// It multiplies if the exponent is a whole number from −16 to 16, else it works number by number.
 #[inline(always)]
 pub fn power_minus_one<R: Real>(e: R, exponent: f64) -> R {
     if exponent.fract() != 0.0 || exponent.abs() > 16.0 {
@@ -82,7 +83,7 @@ mod tests {
     use super::super::real::Scalar;
     use super::*;
 
-    /// From just above −1 to 100, dense around 0, both signs.
+    /// Numbers from just above −1 to 100, dense around 0, of both signs.
     fn samples() -> impl Iterator<Item = f64> {
         let small = (-80..=-1).map(|k| 10f64.powf(0.25 * f64::from(k)));
         small.flat_map(|e| [e, -e]).chain([
@@ -90,7 +91,7 @@ mod tests {
         ])
     }
 
-    /// Largest relative error of `ours`, in units of ε.
+    /// Returns the largest relative error of `ours`, in units of ε.
     fn worst<T: Scalar>(ours: impl Fn(T) -> T, exact: impl Fn(f64) -> f64) -> f64 {
         let error = samples().map(|e| {
             let e = T::from_f64(e);
@@ -112,9 +113,9 @@ mod tests {
     }
 
     #[test]
-    fn what_the_logarithm_leaves_is_accurate_relative_to_itself() {
+    fn remainder_of_the_logarithm_is_accurate_relative_to_itself() {
         assert_eq!(minus_ln_1p(0.0f64), 0.0);
-        // The alternating series for what is too small to subtract.
+        // The alternating series where the difference would cancel.
         let exact = |e: f64| match e.abs() {
             small if small < 1e-3 => (2..12).map(|k| (-e).powi(k) / f64::from(k)).sum(),
             _ => e - libm::log1p(e),

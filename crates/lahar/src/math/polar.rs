@@ -1,16 +1,16 @@
 //! The polar decomposition of a 2×2 or 3×3 matrix: the rotation that corotated laws compare a
 //! deformation gradient with.
 //!
-//! A closed form in 2D; in 3D `split.rs` brings it down to that. Unlike Newton's iteration (N.
-//! Higham, "Computing the polar decomposition", SISSC 7, 1986) this minds neither reflections nor
-//! matrices that cannot be inverted, and costs no more.
+//! 2D has a closed form, and `split.rs` reduces 3D to 2D. Unlike Newton's iteration (N. Higham,
+//! "Computing the polar decomposition", SISSC 7, 1986) this works for reflections and for singular
+//! matrices, and costs no more.
 
 use super::matrix::Matrix;
 use super::real::Real;
 use super::split::{direction, dot, scaled, split, times, turn};
 use super::vector::Vector;
 
-/// F = R S; made by [`polar`].
+/// The decomposition F = R S; made by [`polar`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Polar<R, const D: usize> {
     /// R, a rotation.
@@ -19,20 +19,20 @@ pub struct Polar<R, const D: usize> {
     pub stretch: Matrix<R, D>,
 }
 
-/// The polar decomposition of `f`, 2×2 or 3×3 (any unit): R is the rotation nearest to F, and
+/// Returns the polar decomposition of `f`, 2×2 or 3×3 (any unit): R is the rotation nearest to F, and
 /// S = RᵀF.
 ///
-/// Where det F is negative R is a rotation still, and S has one negative eigenvalue, that of least
-/// magnitude. Where several rotations are equally near it is one of them; for the zero matrix it
-/// is the identity.
+/// If det F is negative, R is still a rotation, and S has one negative eigenvalue, the one of least
+/// magnitude. If several rotations are equally near, R is one of them; for the zero matrix it is
+/// the identity.
 ///
 /// Errors, with ε the distance from 1 to the next number and ‖·‖ the Frobenius norm, measured
 /// rather than proven by `tests/decompositions.rs`:
 /// ‖R S − F‖ and ‖RᵀF − FᵀR‖ ≤ 10 ε ‖F‖, ‖RᵀR − I‖ ≤ 16 ε.
 ///
-/// They hold whether or not denormal numbers are flushed, for matrices whose largest entry is
-/// between 1e-31 and 8e37 (f32), 1e-292 and 4e307 (f64). Below, what underflows is lost, and a
-/// matrix of denormal numbers counts as zero.
+/// These bounds hold with and without flushing of denormal numbers, for matrices whose largest entry is
+/// between 1e-31 and 8e37 (f32), 1e-292 and 4e307 (f64). Below, digits underflow, and a matrix of
+/// denormal numbers counts as zero.
 ///
 /// ```
 /// use lahar::math::{Matrix, Vector, polar};
@@ -74,14 +74,14 @@ fn rotation_3d<R: Real>(f: Matrix<R, 3>) -> Matrix<R, 3> {
     ])
 }
 
-/// Cosine and sine of the turn nearest to a 2×2 matrix with entries of at most about 1.
+/// Returns cosine and sine of the rotation nearest to a 2×2 matrix with entries of at most about 1.
 #[inline(always)]
 fn angle<R: Real>(f: Matrix<R, 2>) -> (R, R) {
     let (c, s, _) = direction(f[(0, 0)] + f[(1, 1)], f[(1, 0)] - f[(0, 1)]);
     (c, s)
 }
 
-/// The symmetric part of RᵀF.
+/// Returns the symmetric part of RᵀF.
 #[inline(always)]
 fn stretch<R: Real, const D: usize>(rotation: Matrix<R, D>, f: Matrix<R, D>) -> Matrix<R, D> {
     let half = f[(0, 0)].lit(0.5);

@@ -38,6 +38,17 @@ impl Mask for bool {
 
 /// A real number, or a register of them, with the operations that formulas may use.
 ///
+/// ```
+/// use lahar::math::Real;
+///
+/// /// The pressure of a perfect gas, once for every kind of number.
+/// fn pressure<R: Real>(density: R) -> R {
+///     density * density.lit(287.0 * 293.0) // R T
+/// }
+/// assert_eq!(pressure(2.0_f64), 168_182.0);
+/// assert_eq!(pressure(2.0_f32), 168_182.0);
+/// ```
+///
 /// Methods ending in `_by_number` have no vector instruction: a register computes them lane by lane.
 pub trait Real:
     Copy

@@ -1,6 +1,6 @@
-//! The shape of a quantity: how many numbers it has.
+//! Shapes of quantities, and their numbers of entries.
 
-/// Whether a quantity is one number, a vector or a matrix.
+/// The shape of a quantity: one number, a vector or a matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Shape {
     /// One number.

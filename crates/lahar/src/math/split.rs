@@ -1,5 +1,5 @@
-//! What `svd` and `polar` share: in 3D, take one singular triple off and leave a 2×2 matrix, for
-//! which both have a closed form.
+//! The step that `svd` and `polar` share: in 3D, take one singular triple off and leave a 2×2 matrix,
+//! for which both have a closed form.
 //!
 //! ```text
 //!   F = scale · [ a | p q ] ⎡ s     ⎤ [ v | u w ]ᵀ
@@ -8,12 +8,12 @@
 //!
 //! The triple (a, s, v) taken off is the largest or the smallest of F, whichever is further from
 //! the one in the middle. Then v is an eigenvector of C = FᵀF with a gap of at least half the
-//! spread of the eigenvalues, so that a direct formula finds it to a few roundings of ‖C‖. What
-//! is neglected, the rest of aᵀF and of F v, is of that size over σ₁ when the largest is taken
-//! off, over σ₂ ≥ σ₁/√2 when it is the smallest: a few roundings of ‖F‖. No singular value is the
-//! root of an eigenvalue, which would leave the small ones an error of √ε ‖F‖.
+//! spread of the eigenvalues, so that a direct formula finds it to a few roundings of ‖C‖. The
+//! neglected remainders of aᵀF and of F v have that size divided by σ₁ when the largest triple is
+//! taken off, and by σ₂ ≥ σ₁/√2 when the smallest is: a few roundings of ‖F‖. No singular value is
+//! computed as the root of an eigenvalue, which would leave an error of √ε ‖F‖ in the small ones.
 //!
-//! No loop but one or two steps of Newton on a scalar, and no branch: it is written for lanes.
+//! It is written for lanes: there is no branch, and no loop but one or two Newton steps on a scalar.
 //!
 //! Sources: the eigenvalue that stands apart, O. K. Smith, "Eigenvalues of a symmetric 3×3
 //! matrix", CACM 4 (1961); deflating by it, D. Eberly, "A robust eigensolver for 3×3 symmetric
@@ -24,7 +24,7 @@ use super::matrix::Matrix;
 use super::real::Real;
 use super::vector::Vector;
 
-/// F taken apart as in the picture of the module's page.
+/// The factors of F in the picture above.
 pub(super) struct Split<R: Real> {
     /// The magnitude of the largest entry of F; 0 for the zero matrix.
     pub(super) scale: R,
@@ -36,15 +36,15 @@ pub(super) struct Split<R: Real> {
     pub(super) value: R,
     /// G.
     pub(super) block: Matrix<R, 2>,
-    /// Where s is the largest singular value; elsewhere it is the smallest.
+    /// The lanes in which s is the largest singular value; in the others it is the smallest.
     pub(super) is_largest: R::Mask,
 }
 
-/// Takes `f` apart.
+/// Splits `f` into its factors.
 #[inline(always)]
 pub(super) fn split<R: Real>(f: Matrix<R, 3>) -> Split<R> {
     let (mut f, scale) = scaled(f);
-    // The zero matrix is worked as diag(1, 0, 0), and gets its zeros back from the scale.
+    // The zero matrix is treated as diag(1, 0, 0); multiplying by the scale gives its zeros back.
     f[(0, 0)] = R::select(scale.gt(scale.zero()), f[(0, 0)], scale.one());
 
     let (direction, is_largest) = eigenvector_apart(f);
@@ -54,8 +54,8 @@ pub(super) fn split<R: Real>(f: Matrix<R, 3>) -> Split<R> {
         times(f, right.0[1]),
         times(f, right.0[2]),
     ];
-    // The largest: its image is the direction. The smallest: what is square to the other images
-    // is, for its own may be nothing but rounding errors.
+    // The image of the largest gives the direction a. The image of the smallest may be nothing but
+    // rounding errors; then a is perpendicular to the images of the other two.
     let across = cross(images[1], images[2]);
     let left = frame(select(is_largest, images[0], across));
     let [a, p, q] = left.0;
@@ -72,10 +72,11 @@ pub(super) fn split<R: Real>(f: Matrix<R, 3>) -> Split<R> {
     }
 }
 
-/// `f` over its largest entry, and that entry's magnitude: both 0 if that is too small to divide by.
+/// Returns `f` divided by the magnitude of its largest entry, and that magnitude; both are 0 if it is
+/// too small to divide by.
 #[inline(always)]
 pub(super) fn scaled<R: Real, const D: usize>(f: Matrix<R, D>) -> (Matrix<R, D>, R) {
-    // By columns, which do not wait for each other.
+    // Column by column, so that the comparisons do not wait for each other.
     let mut largest = f[(0, 0)].zero();
     for column in f.0 {
         let mut of_column = column[0].abs();
@@ -93,8 +94,8 @@ pub(super) fn scaled<R: Real, const D: usize>(f: Matrix<R, D>) -> (Matrix<R, D>,
     )
 }
 
-/// Cosine and sine of the direction of (x, y), and its length; of the direction (1, 0) where the
-/// length is below ε².
+/// Returns cosine and sine of the direction of (x, y), and its length. Where the length is below ε², the
+/// direction is (1, 0).
 #[inline(always)]
 pub(super) fn direction<R: Real>(x: R, y: R) -> (R, R, R) {
     let epsilon = R::EPSILON;
@@ -109,15 +110,16 @@ pub(super) fn direction<R: Real>(x: R, y: R) -> (R, R, R) {
     )
 }
 
-/// An eigenvector of fᵀf, of any length, to its largest or its smallest eigenvalue, whichever is further from
-/// the middle one, and whether it is the largest. The largest entry of `f` is 1.
+/// Returns an eigenvector of fᵀf, of any length, for its largest or its smallest eigenvalue, whichever is
+/// further from the middle one, and a mask of the lanes in which it is the largest. The largest entry
+/// of `f` is 1.
 #[inline(always)]
 fn eigenvector_apart<R: Real>(f: Matrix<R, 3>) -> (Vector<R, 3>, R::Mask) {
     let [x, y, z] = f.0;
     let (c00, c11, c22) = (dot(x, x), dot(y, y), dot(z, z));
     let (m01, m02, m12) = (dot(x, y), dot(x, z), dot(y, z));
 
-    // C less a third of its trace, from differences, so that no more is rounded than has to be.
+    // C minus a third of its trace, from differences, so that as little as possible is rounded.
     let third = c00.lit(1.0 / 3.0);
     let (d01, d12, d20) = (c00 - c11, c11 - c22, c22 - c00);
     let (m00, m11, m22) = (
@@ -141,12 +143,12 @@ fn eigenvector_apart<R: Real>(f: Matrix<R, 3>) -> (Vector<R, 3>, R::Mask) {
     let determinant = m00.mul_add(a00, m01.mul_add(a01, m02 * a02));
     let half = sum.lit(0.5);
     let h = determinant * half * (inverse_p * inverse_p * inverse_p);
-    // Where C is a multiple of the identity but for rounding errors, any direction will do.
+    // If C is a multiple of the identity up to rounding errors, any direction will do.
     let epsilon = R::EPSILON;
     let apart = p_squared.gt(sum.lit((0.25 * epsilon).powi(2)));
     let shift = R::select(apart, (p * largest_root(h.abs())).copysign(h), sum.one());
 
-    // The adjugate of C less its eigenvalue is a multiple of v vᵀ: its longest column.
+    // The adjugate of C minus its eigenvalue is a multiple of v vᵀ. Its longest column is taken.
     let (m00, m11, m22) = (m00 - shift, m11 - shift, m22 - shift);
     let (a00, a11, a22) = (
         minor(m11, m22, m12, m12),
@@ -173,8 +175,8 @@ fn eigenvector_apart<R: Real>(f: Matrix<R, 3>) -> (Vector<R, 3>, R::Mask) {
     (column, shift.ge(shift.zero()))
 }
 
-/// The largest root 2 cos(⅓ arccos h) of t³ − 3t = 2h, for h from 0 to 1: a polynomial good to
-/// 1e-4, and one step of Newton for f32 (6e-9), two for f64.
+/// Returns the largest root 2 cos(⅓ arccos h) of t³ − 3t = 2h, for h from 0 to 1: a polynomial with an
+/// error of 1e-4, then one Newton step for f32 (6e-9), two for f64.
 #[inline(always)]
 fn largest_root<R: Real>(h: R) -> R {
     let mut t = h
@@ -191,11 +193,11 @@ fn largest_root<R: Real>(h: R) -> R {
     t
 }
 
-/// A rotation whose first column has the direction of `n`, not zero.
+/// Returns a rotation whose first column has the direction of `n`, which is not zero.
 #[inline(always)]
 fn frame<R: Real>(n: Vector<R, 3>) -> Matrix<R, 3> {
     let length = dot(n, n).sqrt();
-    // From n rather than the unit vector: two divisions at once instead of one after the other.
+    // From n rather than from the unit vector, so that the two divisions run side by side.
     let a = -(length / (length.copysign(n[2]) + n[2]));
     let one = length.one();
     let sign = one.copysign(n[2]);
@@ -209,7 +211,7 @@ fn frame<R: Real>(n: Vector<R, 3>) -> Matrix<R, 3> {
     ])
 }
 
-/// `if_true` where the mask is true, else `if_false`.
+/// Returns `if_true` where the mask is true, else `if_false`.
 #[inline(always)]
 pub(super) fn select<R: Real>(
     mask: R::Mask,
@@ -219,7 +221,7 @@ pub(super) fn select<R: Real>(
     Vector::from_fn(|i| R::select(mask, if_true[i], if_false[i]))
 }
 
-/// The directions `p` and `q`, turned from the one towards the other by the angle of the given
+/// Rotates the directions `p` and `q` in their plane, from `p` towards `q`, by the angle with the given
 /// cosine and sine.
 #[inline(always)]
 pub(super) fn turn<R: Real>(
@@ -233,7 +235,7 @@ pub(super) fn turn<R: Real>(
     )
 }
 
-/// sum + x factor, fused where the instruction set fuses.
+/// Returns sum + x factor, fused where the instruction set fuses.
 #[inline(always)]
 pub(super) fn add_scaled<R: Real>(
     mut sum: Vector<R, 3>,
@@ -246,7 +248,7 @@ pub(super) fn add_scaled<R: Real>(
     sum
 }
 
-/// Σ aᵢ bᵢ, fused where the instruction set fuses.
+/// Returns Σ aᵢ bᵢ, fused where the instruction set fuses.
 #[inline(always)]
 pub(super) fn dot<R: Real, const D: usize>(a: Vector<R, D>, b: Vector<R, D>) -> R {
     let mut sum = a[D - 1] * b[D - 1];
@@ -256,13 +258,13 @@ pub(super) fn dot<R: Real, const D: usize>(a: Vector<R, D>, b: Vector<R, D>) -> 
     sum
 }
 
-/// `m` times `x`, fused where the instruction set fuses.
+/// Returns `m` times `x`, fused where the instruction set fuses.
 #[inline(always)]
 pub(super) fn times<R: Real>(m: Matrix<R, 3>, x: Vector<R, 3>) -> Vector<R, 3> {
     add_scaled(add_scaled(m.0[2] * x[2], m.0[1], x[1]), m.0[0], x[0])
 }
 
-/// a × b.
+/// Returns the vector product a × b.
 #[inline(always)]
 fn cross<R: Real>(a: Vector<R, 3>, b: Vector<R, 3>) -> Vector<R, 3> {
     Vector([
@@ -272,7 +274,7 @@ fn cross<R: Real>(a: Vector<R, 3>, b: Vector<R, 3>) -> Vector<R, 3> {
     ])
 }
 
-/// a b − c d.
+/// Returns a b − c d.
 #[inline(always)]
 fn minor<R: Real>(a: R, b: R, c: R, d: R) -> R {
     a.mul_add(b, -(c * d))

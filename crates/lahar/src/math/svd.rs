@@ -1,18 +1,18 @@
-//! The singular value decomposition of a 2×2 or 3×3 matrix: what snow and sand need of a
-//! deformation gradient, in lanes, at the price of a few square roots.
+//! The singular value decomposition of a 2×2 or 3×3 matrix: plastic models such as snow need it of the
+//! deformation gradient. It works in lanes, at the price of a few square roots.
 //!
 //! Neither dimension iterates to convergence. 2×2 has a closed form, J. Blinn, "Consider the lowly
-//! 2×2 matrix", IEEE CG&A 16 (1996); 3×3 comes down to 2×2 by `split.rs`. The conventions
+//! 2×2 matrix", IEEE CG&A 16 (1996); `split.rs` reduces 3×3 to 2×2. The conventions
 //! (rotations, and the sign on the last singular value) are those of A. McAdams et al., "Computing
 //! the singular value decomposition of 3×3 matrices with minimal branching and elementary floating
-//! point operations", UW-Madison TR1690 (2011), whose Jacobi sweeps this does without.
+//! point operations", UW-Madison TR1690 (2011), but there are no Jacobi sweeps.
 
 use super::matrix::Matrix;
 use super::real::Real;
 use super::split::{direction, dot, scaled, select, split, turn};
 use super::vector::Vector;
 
-/// F = U diag(σ) Vᵀ; made by [`svd`].
+/// The decomposition F = U diag(σ) Vᵀ; made by [`svd`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Svd<R, const D: usize> {
     /// U, a rotation.
@@ -24,7 +24,7 @@ pub struct Svd<R, const D: usize> {
 }
 
 impl<R: Real, const D: usize> Svd<R, D> {
-    /// U diag(σ) Vᵀ, as after a change of `sigma`.
+    /// Returns U diag(σ) Vᵀ, for use after a change of `sigma`.
     #[inline(always)]
     pub fn compose(self) -> Matrix<R, D> {
         let (rows, columns) = (self.u.transpose(), self.v.transpose());
@@ -45,7 +45,7 @@ impl<R: Real, const D: usize> Svd<R, D> {
     }
 }
 
-/// The singular value decomposition of `f`, 2×2 or 3×3 (any unit).
+/// Returns the singular value decomposition of `f`, 2×2 or 3×3 (any unit).
 ///
 /// U and V are rotations, σ₁ ≥ … ≥ |σ_D|, and the last σ has the sign of det F. Where singular
 /// values coincide, U and V are one choice of many. The zero matrix gives rotations and zeros.
@@ -56,13 +56,13 @@ impl<R: Real, const D: usize> Svd<R, D> {
 /// |---|---|---|
 /// | ‖U diag(σ) Vᵀ − F‖ ≤ 10 ε ‖F‖ | \|σᵢ − exact\| ≤ 10 ε σ₁ | ‖UᵀU − I‖, ‖VᵀV − I‖ ≤ 12 ε |
 ///
-/// Measured rather than proven, by `tests/decompositions.rs`. A singular value below ε σ₁, and its
-/// sign, is thus a rounding error; more takes one-sided Jacobi (J. Demmel & K. Veselić, "Jacobi's
-/// method is more accurate than QR", SIMAX 13, 1992).
+/// The bounds are measured by `tests/lahar/decompositions.rs`, not proven. A singular value below ε σ₁,
+/// and its sign, is thus a rounding error. More accuracy would take one-sided Jacobi (J. Demmel &
+/// K. Veselić, "Jacobi's method is more accurate than QR", SIMAX 13, 1992).
 ///
-/// They hold whether or not denormal numbers are flushed, for matrices whose largest entry is
-/// between 1e-31 and 8e37 (f32), 1e-292 and 4e307 (f64). Below, what underflows is lost, and a
-/// matrix of denormal numbers counts as zero.
+/// These bounds hold with and without flushing of denormal numbers, for matrices whose largest entry is
+/// between 1e-31 and 8e37 (f32), 1e-292 and 4e307 (f64). Below, digits underflow, and a matrix of
+/// denormal numbers counts as zero.
 ///
 /// ```
 /// use lahar::math::{Matrix, Vector, svd};
@@ -98,7 +98,7 @@ fn svd_3d<R: Real>(f: Matrix<R, 3>) -> Svd<R, 3> {
     let (s, [large, small]) = (split.value, closed.sigma.0);
     let first = split.is_largest;
 
-    // Equal ones may come out in the wrong order by a rounding error.
+    // Equal singular values may be in the wrong order by a rounding error.
     let sigma_1 = R::select(first, s, large);
     let sigma_2 = R::select(first, large, small).min(sigma_1);
     let sigma_3 = R::select(first, small, s);
@@ -110,8 +110,9 @@ fn svd_3d<R: Real>(f: Matrix<R, 3>) -> Svd<R, 3> {
     }
 }
 
-/// The columns of U or V: the one taken off first, where it is the largest, else last. That is a
-/// cyclic change of order, so that a rotation stays one.
+/// Returns the columns of U or V in order. The column that `split` has taken off comes first where its
+/// singular value is the largest, else last. That is a cyclic permutation, so that a rotation stays a
+/// rotation.
 #[inline(always)]
 fn ordered<R: Real>(first: R::Mask, basis: Matrix<R, 3>, angle: (R, R)) -> Matrix<R, 3> {
     let [a, p, q] = basis.0;
@@ -123,7 +124,7 @@ fn ordered<R: Real>(first: R::Mask, basis: Matrix<R, 3>, angle: (R, R)) -> Matri
     ])
 }
 
-/// The turn by an angle of which cosine and sine are given.
+/// Returns the rotation by the angle with this cosine and sine.
 #[inline(always)]
 fn turned<R: Real>((c, s): (R, R)) -> Matrix<R, 2> {
     Matrix([Vector([c, s]), Vector([-s, c])])
@@ -138,8 +139,8 @@ struct Closed<R> {
 }
 
 impl<R: Real> Closed<R> {
-    /// F is a turn by α times a number, plus a reflection at an axis of angle β/2 times a number:
-    /// those numbers' sum and difference are σ, U turns by (β + α)/2 and V by (β − α)/2.
+    /// F is a multiple of the rotation by α plus a multiple of the reflection at the axis of angle β/2.
+    /// The sum and the difference of the two factors are σ; U rotates by (β + α)/2, V by (β − α)/2.
     #[inline(always)]
     fn new(f: Matrix<R, 2>) -> Self {
         let half = f[(0, 0)].lit(0.5);

@@ -3,16 +3,16 @@
 use super::real::Real;
 use core::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
-/// `D` components; in lanes, `D` registers.
+/// A vector of `D` components; in lanes, of `D` registers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vector<R, const D: usize>(pub [R; D]);
 
 impl<R: Real, const D: usize> Vector<R, D> {
-    /// The vector whose component `i` is `f(i)`.
+    /// Creates the vector whose component `i` is `f(i)`.
     ///
-    /// A plain loop: `core::array::from_fn` leaves closures of lanes as calls to functions without
-    /// the instruction set, in which every operation is one more call (measured: 7 to 12 times
-    /// slower).
+    /// It is a plain loop, because `core::array::from_fn` leaves closures over lanes as calls of
+    /// functions without the instruction set, in which every operation is one more call (measured: 7 to
+    /// 12 times slower).
     #[inline(always)]
     #[expect(
         clippy::needless_range_loop,
@@ -25,7 +25,7 @@ impl<R: Real, const D: usize> Vector<R, D> {
         }
         Self(result)
     }
-    /// Σ aᵢ bᵢ.
+    /// Returns the scalar product Σ aᵢ bᵢ.
     #[inline(always)]
     pub fn dot(self, other: Self) -> R {
         let mut sum = self[0] * other[0];
@@ -34,7 +34,7 @@ impl<R: Real, const D: usize> Vector<R, D> {
         }
         sum
     }
-    /// Euclidean length.
+    /// Returns the Euclidean length.
     #[inline(always)]
     pub fn norm(self) -> R {
         self.dot(self).sqrt()
@@ -84,7 +84,7 @@ impl<R: Real, const D: usize> Neg for Vector<R, D> {
         self
     }
 }
-/// Times a number.
+/// Multiplies by a number.
 impl<R: Real, const D: usize> Mul<R> for Vector<R, D> {
     type Output = Self;
     #[inline(always)]

@@ -21,13 +21,13 @@ pub(crate) struct SceneModel {
     pub(crate) section: &'static Section,
     /// Named sets of its keys.
     pub(crate) presets: &'static [Preset],
-    /// What it looks like.
+    /// Its look.
     look: Look,
     /// Reads it from a checked table, in so many dimensions; the stiffness is that of a fluid.
     read: fn(&Reader<'_>, usize) -> Result<(Model, Option<Stiffness>), SceneError>,
 }
 
-/// What a material looks like in windows and pictures, unless it has a color of its own.
+/// The look of a material in windows and pictures; a material may have a color of its own besides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
     /// Grains that exert no stress.

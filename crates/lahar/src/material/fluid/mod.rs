@@ -7,9 +7,9 @@
 //! |---|---|
 //! | `mod.rs` | equation of state, stress, presets |
 //! | `rheology.rs` | viscosity that depends on the rate of shear |
-//! | `model.rs` | what the engine asks of fluids only |
-//! | `volume_rule.rs` | where J comes from |
-//! | `storage.rs` | what the engine does with fluids only |
+//! | `model.rs` | the trait of fluids |
+//! | `volume_rule.rs` | the source of J |
+//! | `storage.rs` | operations of the engine on the columns of fluids |
 
 pub(super) mod model;
 pub mod rheology;

@@ -1,8 +1,8 @@
-//! The trait of models that are fluids.
+//! The trait of fluids, beside that of all models.
 
 use super::volume_rule::VolumeRule;
 
-/// What the engine asks of fluids only. Their strain has the variable J
+/// A constitutive model of a fluid, with the properties that solids lack. Its strain has the variable J
 /// ([`JACOBIAN`](crate::material::JACOBIAN)).
 pub trait FluidModel {
     /// Returns the source of J.

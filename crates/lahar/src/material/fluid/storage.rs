@@ -1,4 +1,4 @@
-//! What the engine does with fluids only, on columns of storage.
+//! Operations of the engine on the stored columns of fluids.
 
 use super::{FluidModel, VolumeCorrection, VolumeRule};
 use crate::material::{JACOBIAN, Law, find};

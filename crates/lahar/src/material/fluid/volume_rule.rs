@@ -1,4 +1,4 @@
-//! Rules that say where the volume of a fluid particle comes from.
+//! The rules for the volume of a fluid particle.
 
 /// The source of a fluid's J.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
