@@ -17,6 +17,9 @@ const RECORD: &str = "run.json";
 const CHECKPOINTS: &str = "checkpoints";
 const LOCK: &str = "lock";
 
+/// Beginning of the name of a film that a resumed run has set aside.
+const OLD_VIDEO: &str = "video-to-";
+
 /// File names (without the ending .svg) of the plots that `lahar plot` draws from `diagnostics.csv`; those of probes
 /// begin with [`PROBE_PLOT`].
 pub const PLOTS: [&str; 6] = [
@@ -67,6 +70,7 @@ const OWN_FOLDERS: [OwnFolder; 8] = [
             "video.gif",
         ]
         .contains(&name)
+            || (name.strip_prefix(OLD_VIDEO)).is_some_and(|name| is_frame(name, "gif"))
     }),
 ];
 
@@ -387,7 +391,7 @@ impl RunFolder {
     /// # Errors
     /// If it cannot be renamed.
     pub fn keep_old_video(&self, last_frame: u64) -> Result<Option<PathBuf>, OutputError> {
-        let old = self.path.join(format!("video-to-{last_frame:06}.gif"));
+        let old = self.path.join(format!("{OLD_VIDEO}{last_frame:06}.gif"));
         match fs::rename(self.video(), &old) {
             Ok(()) => Ok(Some(old)),
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
@@ -471,6 +475,7 @@ mod tests {
             "render/video.mp4",
             "report.html",
             "video.gif",
+            "video-to-000010.gif",
         ]
         .iter()
         .chain(NOTES)
