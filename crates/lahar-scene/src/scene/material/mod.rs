@@ -23,9 +23,12 @@ pub(crate) struct SceneModel {
     pub(crate) presets: &'static [Preset],
     /// Its look.
     look: Look,
-    /// Reads it from a checked table, in so many dimensions; the stiffness is that of a fluid.
-    read: fn(&Reader<'_>, usize) -> Result<(Model, Option<Stiffness>), SceneError>,
+    /// Its reader.
+    read: ReadModel,
 }
+
+/// A function that reads a model from its checked table, in this number of dimensions, and a fluid's stiffness with it.
+type ReadModel = fn(&Reader<'_>, usize) -> Result<(Model, Option<Stiffness>), SceneError>;
 
 /// The look of a material in windows and pictures; a material may have a color of its own besides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
