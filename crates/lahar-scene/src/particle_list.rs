@@ -8,6 +8,10 @@ pub(crate) use arrays::{from_arrays, read_npz};
 
 use crate::error::{SceneError, nearest};
 use crate::text::{AXES, Lines, shorten};
+use lahar::material::Variable;
+use lahar::math::Shape;
+use lahar::particles::FIELDS;
+use lahar::{Field, StartingValues};
 
 /// A list of particles: columns with one entry per particle. Columns that the file does not have are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -26,6 +30,8 @@ pub struct ParticleList<const D: usize> {
     pub deformation_gradient: Vec<[[f64; D]; D]>,
     /// The affine velocity matrices C \[1/s\], row by row.
     pub affine: Vec<[[f64; D]; D]>,
+    /// Other internal variables of models, such as J_P.
+    pub variables: Vec<StartingValues>,
     /// Warnings about the file.
     pub warnings: Vec<String>,
 }
@@ -40,13 +46,37 @@ pub(crate) enum Column {
     Jacobian,
     Gradient(usize, usize),
     Affine(usize, usize),
+    /// An internal variable, and the entry of it.
+    Variable(&'static Variable, usize),
 }
 
 impl Column {
     /// Returns true if the quantity must be above 0.
     fn is_positive(self) -> bool {
-        matches!(self, Self::Volume | Self::Mass | Self::Jacobian)
+        match self {
+            Self::Volume | Self::Mass | Self::Jacobian => true,
+            Self::Variable(variable, _) => variable.is_positive(),
+            Self::Position(_) | Self::Velocity(_) | Self::Gradient(..) | Self::Affine(..) => false,
+        }
     }
+}
+
+/// Returns the internal variables of models that a list may have besides J and F.
+pub(crate) fn known_variables() -> impl Iterator<Item = &'static Variable> {
+    FIELDS.iter().filter_map(|info| match info.field {
+        Field::Variable(variable) => Some(variable),
+        Field::Id
+        | Field::Body
+        | Field::Material
+        | Field::Position
+        | Field::Velocity
+        | Field::Affine
+        | Field::Jacobian
+        | Field::DeformationGradient
+        | Field::Pressure
+        | Field::Mass
+        | Field::Volume0 => None,
+    })
 }
 
 /// Returns every column that a file may have, with its name.
@@ -63,6 +93,16 @@ pub(crate) fn known_columns<const D: usize>() -> Vec<(String, Column)> {
         for j in 0..D {
             known.push((format!("F{}{}", i + 1, j + 1), Column::Gradient(i, j)));
             known.push((format!("C{}{}", i + 1, j + 1), Column::Affine(i, j)));
+        }
+    }
+    for variable in known_variables() {
+        for entry in 0..variable.shape.len(D) {
+            let name = match variable.shape {
+                Shape::Scalar => variable.name.to_owned(),
+                Shape::Vector => format!("{}_{}", variable.name, AXES[entry]),
+                Shape::Matrix => format!("{}_{}{}", variable.name, entry / D + 1, entry % D + 1),
+            };
+            known.push((name, Column::Variable(variable, entry)));
         }
     }
     known
@@ -161,9 +201,13 @@ fn parse_header<const D: usize>(
             return Err(
                 match nearest(field, known.iter().map(|(name, _)| name.as_str())) {
                     Some(near) => error.hint(format!("did you mean \"{near}\"?")),
-                    None => error.hint(
-                        "known: x, y, z, vx, vy, vz, volume, mass, J, F11, F12, .., C11, C12, ..",
-                    ),
+                    None => {
+                        let variables: Vec<&str> = known_variables().map(|v| v.name).collect();
+                        error.hint(format!(
+                            "known: x, y, z, vx, vy, vz, volume, mass, J, F11, F12, .., C11, C12, .., {}",
+                            variables.join(", ")
+                        ))
+                    }
                 },
             );
         };
@@ -214,12 +258,29 @@ impl<const D: usize> ParticleList<D> {
                 Column::Jacobian => self.jacobian.push(value),
                 Column::Gradient(i, j) => gradient.get_or_insert([[0.0; D]; D])[i][j] = value,
                 Column::Affine(i, j) => affine.get_or_insert([[0.0; D]; D])[i][j] = value,
+                Column::Variable(variable, entry) => self.set_variable(variable, entry, value),
             }
         }
         self.position.push(position);
         self.velocity.extend(velocity);
         self.deformation_gradient.extend(gradient);
         self.affine.extend(affine);
+    }
+
+    /// Sets an entry of a variable of the particle that is being added.
+    fn set_variable(&mut self, variable: &Variable, entry: usize, value: f64) {
+        let (row, width) = (self.position.len(), variable.shape.len(D));
+        let known = (self.variables.iter()).position(|given| given.name == variable.name);
+        let index = known.unwrap_or_else(|| {
+            self.variables.push(StartingValues {
+                name: variable.name.to_owned(),
+                values: Vec::new(),
+            });
+            self.variables.len() - 1
+        });
+        let values = &mut self.variables[index].values;
+        values.resize((row + 1) * width, 0.0);
+        values[row * width + entry] = value;
     }
 }
 
@@ -230,12 +291,17 @@ pub(crate) fn check_columns<const D: usize>(columns: &[Column]) -> Result<(), St
         Column::Velocity(_) => 2,
         Column::Gradient(..) => 3,
         Column::Affine(..) => 4,
-        Column::Volume | Column::Mass | Column::Jacobian => 0,
+        Column::Volume | Column::Mass | Column::Jacobian | Column::Variable(..) => 0,
+    };
+    let of_variable = |column: &Column, other: &Column| match (column, other) {
+        (Column::Variable(a, _), Column::Variable(b, _)) => a == b,
+        _ => false,
     };
     for (column_name, column) in &known_columns::<D>() {
         let of_group = group(column);
-        let wanted =
-            of_group == 1 || (of_group > 1 && columns.iter().any(|other| group(other) == of_group));
+        let wanted = of_group == 1
+            || (of_group > 1 && columns.iter().any(|other| group(other) == of_group))
+            || columns.iter().any(|other| of_variable(column, other));
         if wanted && !columns.contains(column) {
             return Err(format!("there is no column \"{column_name}\""));
         }
@@ -272,6 +338,12 @@ mod tests {
         let list = parse_csv::<2>("x,y,F11,F12,F21,F22\n0,0,1,2,3,4", "a.csv").unwrap();
         assert_eq!(list.deformation_gradient, [[[1.0, 2.0], [3.0, 4.0]]]);
         assert_eq!(list.warnings.len(), 1);
+        let list = parse_csv::<2>("x,plastic_J,y\n0,0.8,0\n1,1,1\n", "a.csv").unwrap();
+        let plastic = StartingValues {
+            name: "plastic_J".to_owned(),
+            values: vec![0.8, 1.0],
+        };
+        assert_eq!(list.variables, [plastic]);
     }
 
     #[test]

@@ -1,13 +1,15 @@
 //! Particle lists from NumPy's `.npz` archives.
 
-use super::ParticleList;
+use super::{ParticleList, known_variables};
 use crate::error::SceneError;
 use crate::npz::{NpzArray, read_from};
+use lahar::StartingValues;
+use lahar::math::Shape;
 use std::io::{BufReader, Read, Seek};
 
 /// Reads an `.npz` archive with the arrays of a run's frames: `position`, and optionally `velocity`,
-/// `volume0` or `volume`, `mass`, `J`, `deformation_gradient` (which replaces `J`), `affine`; other arrays are
-/// skipped. The arrays may take `limit` bytes together. `name` is the file's, for messages.
+/// `volume0` or `volume`, `mass`, `J`, `deformation_gradient` (which replaces `J`), `affine`, and variables of
+/// models such as `plastic_J`; other arrays are skipped. The arrays may take `limit` bytes together. `name` is the file's, for messages.
 ///
 /// # Errors
 /// The array that is missing, has another shape, or has a value that particles cannot have.
@@ -82,7 +84,7 @@ pub(crate) fn from_arrays<const D: usize>(arrays: &[NpzArray]) -> Result<Particl
             .collect())
     };
     let deformation_gradient = matrices("deformation_gradient")?;
-    let mut list = ParticleList {
+    Ok(ParticleList {
         position: vectors("position")?,
         velocity: vectors("velocity")?,
         volume: match numbers("volume0", &[], true)? {
@@ -97,18 +99,20 @@ pub(crate) fn from_arrays<const D: usize>(arrays: &[NpzArray]) -> Result<Particl
         },
         affine: matrices("affine")?,
         deformation_gradient,
+        variables: known_variables()
+            .filter_map(|variable| {
+                let shape: &[usize] = match variable.shape {
+                    Shape::Scalar => &[],
+                    Shape::Vector => &[D],
+                    Shape::Matrix => &[D, D],
+                };
+                let values = numbers(variable.name, shape, variable.is_positive()).transpose()?;
+                let name = variable.name.to_owned();
+                Some(values.map(|values| StartingValues { name, values }))
+            })
+            .collect::<Result<_, _>>()?,
         warnings: Vec::new(),
-    };
-    if arrays
-        .iter()
-        .any(|array| array.name == "plastic_J" && array.data.to_f64().iter().any(|j| *j != 1.0))
-    {
-        list.warnings.push(
-            "plastic_J of the particle list is not taken over: packed snow starts as fresh"
-                .to_owned(),
-        );
-    }
-    Ok(list)
+    })
 }
 
 #[cfg(test)]
@@ -126,6 +130,7 @@ mod tests {
             array("position", &[2, 2], vec![1.0, 2.0, 3.0, 4.0]),
             array("volume0", &[2], vec![0.1, 0.2]),
             array("affine", &[2, 2, 2], (0..8).map(f64::from).collect()),
+            array("plastic_J", &[2], vec![0.8, 1.0]),
             array("time", &[], vec![0.5]),
         ];
         let list = from_arrays::<2>(&arrays).unwrap();
@@ -133,6 +138,9 @@ mod tests {
         assert_eq!(list.volume, [0.1, 0.2]);
         assert_eq!(list.affine[1], [[4.0, 5.0], [6.0, 7.0]]);
         assert!(list.velocity.is_empty() && list.jacobian.is_empty());
+        assert_eq!(list.variables.len(), 1);
+        assert_eq!(list.variables[0].name, "plastic_J");
+        assert_eq!(list.variables[0].values, [0.8, 1.0]);
         assert!(
             from_arrays::<3>(&arrays)
                 .unwrap_err()

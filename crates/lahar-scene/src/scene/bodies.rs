@@ -7,7 +7,7 @@ use super::plan::{Body, Source, Volume};
 use super::read::Reader;
 use super::shapes::{LARGEST_PART_COUNT, read_shape};
 use crate::error::{SceneError, nearest};
-use crate::particle_list::{self, ParticleList};
+use crate::particle_list::{self, ParticleList, known_variables};
 use crate::text::{not_text, point, shorten};
 use lahar::geometry::sampling::Sampling;
 use lahar::geometry::{Bounds, Primitive, Region, Shape};
@@ -37,7 +37,11 @@ pub(super) fn read_body<const D: usize>(
     let volume = read_volume(table, is_fluid)?;
     let source = match (table.opt_table("shape"), table.opt_text("particles")) {
         (Some(shape), None) => read_shape_source(&name, table, &shape, context)?,
-        (None, Some(path)) => Source::List(read_list(table, path, volume, context, warnings)?),
+        (None, Some(path)) => {
+            let mut list = read_list(table, path, volume, context, warnings)?;
+            keep_variables(&mut list, path, &context.materials[material], warnings);
+            Source::List(list)
+        }
         (Some(_), Some(_)) => {
             return Err(table.error_at_key(
                 "particles",
@@ -277,6 +281,30 @@ fn read_list<const D: usize>(
     }
     warnings.append(&mut list.warnings);
     Ok(list)
+}
+
+/// Keeps the variables that the model of `material` has, and warns of others that are not at rest.
+fn keep_variables<const D: usize>(
+    list: &mut ParticleList<D>,
+    path: &str,
+    material: &Material,
+    warnings: &mut Vec<String>,
+) {
+    list.variables.retain(|given| {
+        let of_model = (material.model.variables().iter()).any(|known| known.name == given.name);
+        let at_rest = known_variables()
+            .find(|known| known.name == given.name)
+            .is_some_and(|known| known.is_at_rest(&given.values, D));
+        if !of_model && !at_rest {
+            warnings.push(format!(
+                "{} of \"{path}\" is left out: the model \"{}\" of \"{}\" has no such variable",
+                given.name,
+                material.model.name(),
+                material.name
+            ));
+        }
+        of_model
+    });
 }
 
 /// Reads a particle list by the ending of its name.

@@ -159,6 +159,7 @@ impl<const D: usize> Plan<D> {
                     list.volume.clone()
                 };
                 batch.affine = list.affine.clone();
+                batch.variables = list.variables.clone();
                 batch.deformation = if !list.deformation_gradient.is_empty() {
                     Deformation::Gradient(list.deformation_gradient.clone())
                 } else if !list.jacobian.is_empty() {

@@ -67,6 +67,23 @@ impl Variable {
         }
     }
 
+    /// Returns true for a scalar that must be above 0.
+    ///
+    /// ```
+    /// use lahar::material::{DEFORMATION_GRADIENT, JACOBIAN};
+    ///
+    /// assert!(JACOBIAN.is_positive() && !DEFORMATION_GRADIENT.is_positive());
+    /// ```
+    pub fn is_positive(&self) -> bool {
+        self.rest == Rest::One && self.shape == Shape::Scalar
+    }
+
+    /// Returns true if all `values` are those at rest, the entries of one particle after the other.
+    pub fn is_at_rest(&self, values: &[f64], dimension: usize) -> bool {
+        let width = self.shape.len(dimension);
+        (values.iter().enumerate()).all(|(i, value)| *value == self.rest_of(i % width, dimension))
+    }
+
     /// The value at rest of entry `entry`, the entries of a matrix being counted row by row.
     pub(crate) fn rest_of(&self, entry: usize, dimension: usize) -> f64 {
         match (self.rest, self.shape) {

@@ -8,8 +8,7 @@ use crate::boundary::walls::Walls;
 use crate::error::SetupError;
 use crate::forces;
 use crate::kernel::STENCIL;
-use crate::material::{DEFORMATION_GRADIENT, JACOBIAN, Rest, Variable};
-use crate::math::Shape;
+use crate::material::{DEFORMATION_GRADIENT, JACOBIAN, Variable};
 use crate::particles::Lattice;
 
 /// Names of the axes, for messages.
@@ -309,9 +308,9 @@ impl<const D: usize> ParticleBatch<D> {
             if values.len() != count {
                 return fail(format!("has {} values; {count} are needed", values.len()));
             }
-            let is_ratio = variable.rest == Rest::One && variable.shape == Shape::Scalar;
-            if let Some(bad) = (values.iter()).find(|x| !x.is_finite() || is_ratio && **x <= 0.0) {
-                let wanted = if is_ratio { "a positive" } else { "a finite" };
+            let positive = variable.is_positive();
+            if let Some(bad) = (values.iter()).find(|x| !x.is_finite() || positive && **x <= 0.0) {
+                let wanted = if positive { "a positive" } else { "a finite" };
                 return fail(format!("must be {wanted} number, not {bad}"));
             }
         }
