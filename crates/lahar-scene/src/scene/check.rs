@@ -1,5 +1,5 @@
-//! A document against the table of keys: what is unknown, missing or of the wrong kind is found
-//! here, and what is absent and has a default is filled in.
+//! Checks a document against the table of keys: unknown and missing keys and values of the wrong kind are errors.
+//! Absent keys get their defaults.
 
 use super::document::{Entry, Node, Sources, Span, Table, Value, literal, literal_table};
 use super::formula::Variables;
@@ -9,7 +9,7 @@ use super::keys::{SCENE, sections};
 use super::material::{PRESET_NAMES, Preset, SceneModel, moduli};
 use crate::error::{SceneError, nearest};
 
-/// Checks and completes the scene `root`; returns its dimension.
+/// Checks the scene `root` and fills in its defaults. Returns its dimension.
 pub(crate) fn check(sources: &Sources, root: &mut Table) -> Result<usize, SceneError> {
     if root.entries.is_empty() {
         let error = sources.error(Span::default(), "the scene is empty");
@@ -38,7 +38,7 @@ pub(crate) fn check(sources: &Sources, root: &mut Table) -> Result<usize, SceneE
     Ok(dimension)
 }
 
-/// The model that a material names, itself or by its preset.
+/// Returns the model that a material names, itself or by its preset.
 pub(crate) fn model_of(material: &Table) -> Option<&'static SceneModel> {
     let text = |key: &str| match &material.get(key)?.value {
         Value::Text(text) => Some(text.as_str()),
@@ -50,7 +50,7 @@ pub(crate) fn model_of(material: &Table) -> Option<&'static SceneModel> {
     }
 }
 
-/// What to write instead of an expression where there must be numbers.
+/// Returns advice for an expression where there must be numbers.
 fn no_formulas(kind: Kind, dimension: usize) -> &'static str {
     match (kind, dimension) {
         (Kind::Rotation | Kind::Matrix, 2) => {
@@ -70,7 +70,7 @@ struct Check<'a> {
 }
 
 impl Check<'_> {
-    /// Checks `table`, which stands at `span`, and fills in the defaults.
+    /// Checks `table`, which is at `span`, and fills in the defaults.
     fn section(
         &self,
         table: &mut Table,
@@ -135,7 +135,7 @@ impl Check<'_> {
         }
     }
 
-    /// The line of the table for an entry.
+    /// Returns the key of an entry; an error if there is no such key.
     fn known(&self, entry: &Entry, section: &'static Section) -> Result<&'static Key, SceneError> {
         if let Some(key) = section.key(&entry.key) {
             if matches!(key.kind, Kind::Later) {
@@ -169,7 +169,7 @@ impl Check<'_> {
         Err(error.hint(format!("known here: {}", names.join(", "))))
     }
 
-    /// Checks one value; `name` is its key, at `key_span`.
+    /// Checks the value of the key `name`, which is at `key_span`.
     fn kind(
         &self,
         node: &mut Node,
@@ -319,7 +319,7 @@ impl Check<'_> {
         }
     }
 
-    /// Numbers or expressions, one a dimension.
+    /// Checks numbers or expressions, one per dimension.
     fn formulas(
         &self,
         list: &[Node],
@@ -346,7 +346,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// `count` numbers.
+    /// Checks `count` numbers.
     fn numbers(
         &self,
         list: &[Node],
@@ -452,7 +452,7 @@ impl Check<'_> {
         Ok(())
     }
 
-    /// Lays the preset under the material and checks it by its model.
+    /// Fills the material in from its preset, and checks it by the keys of its model.
     fn material(&self, material: &mut Table, span: Span) -> Result<(), SceneError> {
         for (name, words) in [("model", lahar::Model::NAMES), ("preset", PRESET_NAMES)] {
             if let Some(node) = material.get(name) {
@@ -515,7 +515,7 @@ impl Check<'_> {
     }
 }
 
-/// Moduli of a preset that the material says by another pair.
+/// Returns the moduli of a preset that the material gives by another pair.
 fn replaced_moduli(material: &Table, base: &Table) -> Vec<&'static str> {
     let given = |key: &&str| material.get(key).is_some() && base.get(key).is_none();
     if moduli().any(|key| given(&key)) {
@@ -525,7 +525,7 @@ fn replaced_moduli(material: &Table, base: &Table) -> Vec<&'static str> {
     }
 }
 
-/// Whether a value has the TOML type of a kind.
+/// Returns true if a value has the TOML type of a kind.
 pub(crate) fn accepts(kind: Kind, value: &Value) -> bool {
     match kind {
         Kind::Text | Kind::Color | Kind::Word(_) => matches!(value, Value::Text(_)),
@@ -556,14 +556,14 @@ fn unit(key: &Key) -> String {
     }
 }
 
-/// Where a key is known that is not known in `here`.
+/// Returns the place of a key that is not known in `here`.
 fn places(name: &str, here: &Section) -> Option<String> {
     let knows = |section: &&Section| {
         section
             .key(name)
             .is_some_and(|key| !matches!(key.kind, Kind::Later))
     };
-    // For a material, other models tell more than tables of other things.
+    // For a material, other models are more likely than other tables.
     let kin = |section: &&Section| {
         section.name.starts_with("material: ") && here.name.starts_with("material: ")
     };

@@ -1,15 +1,15 @@
-//! Keys of scene files: their names, kinds, units and defaults. The tables of keys are made of these.
+//! Keys of scene files: names, kinds, units and defaults. The tables of keys are made of these.
 
 use super::formula::Variables;
 
 /// A table of a scene file.
 #[derive(Debug)]
 pub(crate) struct Section {
-    /// As the documentation calls it: "scene", "domain", "material: fluid".
+    /// The name in the documentation: "scene", "domain", "material: fluid".
     pub(crate) name: &'static str,
-    /// How it is written: "[domain]".
+    /// The spelling in scene files: "[domain]".
     pub(crate) header: &'static str,
-    /// Its keys, in the order of the documentation.
+    /// The keys, in the order of the documentation.
     pub(crate) keys: &'static [&'static [Key]],
 }
 
@@ -23,42 +23,42 @@ impl Section {
     }
 }
 
-/// One key.
+/// A key of a table.
 #[derive(Debug)]
 pub(crate) struct Key {
     pub(crate) name: &'static str,
     pub(crate) kind: Kind,
-    /// In 3D; 2D is per metre of depth.
+    /// The unit in 3D. Units in 2D are per meter of depth.
     pub(crate) unit: &'static str,
     pub(crate) default: WhenAbsent,
-    /// One sentence.
+    /// One sentence about the key, for the documentation.
     pub(crate) about: &'static str,
     pub(crate) only_3d: bool,
 }
 
-/// What holds when a key is absent.
+/// The default of a key.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum WhenAbsent {
-    /// An error.
+    /// None: its absence is an error.
     Required,
-    /// This TOML.
+    /// A value in TOML.
     Value(&'static str),
-    /// This TOML in 2D and this in 3D.
+    /// A value in TOML for 2D, and one for 3D.
     ByDimension(&'static str, &'static str),
-    /// What these words say; the reader sees to it.
+    /// A default that these words describe and the reader computes.
     Words(&'static str),
 }
 
-/// What a key's value is.
+/// The kind of a key's value.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Kind {
     Text,
     /// "#rrggbb".
     Color,
     Number(Bound),
-    /// true or false.
+    /// `true` or `false`.
     Flag,
-    /// A whole number from .. to ..
+    /// A whole number between two bounds, both included.
     Integer(i64, i64),
     /// D numbers.
     Vector,
@@ -68,7 +68,7 @@ pub(crate) enum Kind {
     Rotation,
     /// D rows of D numbers.
     Matrix,
-    /// Points of D numbers.
+    /// A list of points of D numbers.
     Points,
     /// Two numbers, the lower first.
     Interval,
@@ -78,26 +78,26 @@ pub(crate) enum Kind {
     Words(&'static [&'static str]),
     /// Names of particle fields.
     Fields,
-    /// The first alternative that has the value's TOML type decides.
+    /// One of several kinds. The first one with the TOML type of the value decides.
     OneOf(&'static [Kind]),
     Table(&'static Section),
-    /// [[name]].
+    /// A list of tables, `[[name]]`.
     Tables(&'static Section),
-    /// [materials.NAME]: a section by the model.
+    /// The tables `[materials.NAME]`, each with the keys of its model.
     Materials,
-    /// Kept free for a later version.
+    /// A key reserved for a later version.
     Later,
 }
 
-/// Which numbers are allowed; never NaN or infinite ones.
+/// The bounds of a number. NaN and infinite numbers are never allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Bound {
     Any,
     Positive,
     NotNegative,
-    /// 0 to 1.
+    /// From 0 to 1, both included.
     Part,
-    /// −1 to ½, both excluded.
+    /// Between −1 and ½, both excluded.
     Poisson,
 }
 
@@ -125,11 +125,11 @@ impl Bound {
 }
 
 impl Kind {
-    /// In words, after "must be".
+    /// Describes the kind, as in "must be ..".
     pub(crate) fn words(self, dimension: usize) -> String {
         match self {
             Self::Text => "text in quotes".to_owned(),
-            Self::Color => "a colour like \"#3d9be9\"".to_owned(),
+            Self::Color => "a color like \"#3d9be9\"".to_owned(),
             Self::Number(bound) => bound.words().to_owned(),
             Self::Flag => "true or false".to_owned(),
             Self::Integer(0, i64::MAX) => "a whole number, 0 or above".to_owned(),
@@ -196,7 +196,7 @@ pub(crate) const fn key(
     }
 }
 
-/// The words of a table of words and their values, which the reader of the key has too.
+/// Returns the words of a table of words and meanings, which the reader of the key uses too.
 pub(crate) const fn words<T, const N: usize>(
     choices: &[(&'static str, T); N],
 ) -> [&'static str; N] {
@@ -218,7 +218,7 @@ pub(crate) const fn only_3d(mut key: Key) -> Key {
     key
 }
 
-/// The color "#rrggbb".
+/// Reads a color "#rrggbb".
 pub(crate) fn color(text: &str) -> Option<[u8; 3]> {
     let hex = text
         .strip_prefix('#')

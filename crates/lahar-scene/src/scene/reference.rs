@@ -1,5 +1,4 @@
-//! The table of keys made into what others read: a JSON schema for editors, and the tables of
-//! docs/scene-format.md.
+//! Documentation made from the table of keys: a JSON schema for editors, and the tables of docs/scene-format.md.
 
 use super::document::{Span, json as json_of, literal};
 use super::key::{Bound, Key, Kind, Section, WhenAbsent};
@@ -7,7 +6,12 @@ use super::keys::sections;
 use super::material::{ELASTIC, MATERIAL, MODELS, Preset, SceneModel};
 use serde_json::{Map, Value, json};
 
-/// The scene format as a JSON schema (draft 2020-12).
+/// Returns the scene format as a JSON schema (draft 2020-12).
+///
+/// ```
+/// let schema = lahar_scene::scene::schema();
+/// assert_eq!(schema["properties"]["dx"]["exclusiveMinimum"], 0);
+/// ```
 pub fn schema() -> Value {
     let mut schema = object(&super::keys::SCENE);
     if let Some(map) = schema.as_object_mut() {
@@ -46,7 +50,7 @@ fn object(section: &Section) -> Value {
     json!({ "type": "object", "properties": properties, "required": required, "additionalProperties": false })
 }
 
-/// A table of another table; shapes contain shapes, and stand once for all.
+/// Returns the schema of a table. Shapes contain shapes, so they are a definition of their own.
 fn table_of(section: &Section) -> Value {
     if section.name == super::keys::SHAPE.name {
         json!({ "$ref": "#/$defs/shape" })
@@ -55,7 +59,7 @@ fn table_of(section: &Section) -> Value {
     }
 }
 
-/// What editors show: the sentence, the unit, and what holds when the key is absent.
+/// Returns the text that editors show: the sentence, the unit and the default.
 fn description(key: &Key) -> String {
     let unit = if key.unit.is_empty() {
         String::new()
@@ -127,7 +131,7 @@ fn value_of(kind: Kind) -> Value {
     }
 }
 
-/// A material by its model, or by its preset.
+/// Returns the schema of a material, by its model or its preset.
 fn material() -> Value {
     let variants = MODELS.iter().map(|model| {
         let mut variant = object(model.section);
@@ -141,7 +145,7 @@ fn material() -> Value {
     json!({ "anyOf": variants.collect::<Vec<_>>() })
 }
 
-/// A table of the documentation.
+/// A table of keys in the documentation.
 struct DocTable {
     name: &'static str,
     header: String,
@@ -154,7 +158,7 @@ fn same(a: &[Key], b: &[Key]) -> bool {
     a.iter().map(name).eq(b.iter().map(name))
 }
 
-/// The tables; keys that several models share are listed once.
+/// Returns the tables. Keys that several models share are listed once.
 fn tables() -> Vec<DocTable> {
     let mut tables: Vec<DocTable> = Vec::new();
     for section in sections() {
@@ -182,8 +186,8 @@ fn tables() -> Vec<DocTable> {
     tables
 }
 
-/// The reference of the format as Markdown: for each table of a scene its keys with type, unit and
-/// default, and the presets.
+/// Returns the reference of the format as Markdown: for each table of a scene its keys with type, unit and default,
+/// and the presets.
 pub fn docs() -> String {
     let names = tables().into_iter().map(|table| table.name);
     names
@@ -193,7 +197,7 @@ pub fn docs() -> String {
         .join("\n")
 }
 
-/// One table of [`docs`], by its name.
+/// Returns one table of [`docs`], by its name.
 pub fn docs_of(name: &str) -> Option<String> {
     if name == "presets" {
         return Some(presets());

@@ -6,61 +6,67 @@ use crate::scene::key::{Bound, Key, Kind, Section, key, only_3d};
 
 pub(crate) static FORCE: Section = Section {
     name: "force",
-    header: "[[forces]]: exactly one besides the name",
+    header: "[[forces]]: exactly one key besides the name",
     keys: &[&[
         key(
             "name",
             Kind::Text,
             "",
-            Words("its number from 0"),
-            "Name, for `--set forces.NAME.acceleration=..`.",
+            Words("its number, counted from 0"),
+            "Name in `--set forces.NAME.acceleration=..`.",
         ),
         key(
             "acceleration",
             Kind::Formulas(Variables::PlaceAndTime),
             "m/s²",
             Words("–"),
-            "An acceleration, numbers or expressions.",
+            "Acceleration, as numbers or expressions.",
         ),
         key(
             "central",
             Kind::Table(&CENTRAL),
             "",
             Words("–"),
-            "An acceleration towards a point.",
+            "Acceleration towards a point.",
         ),
         key(
             "vortex",
             Kind::Table(&VORTEX),
             "",
             Words("–"),
-            "An acceleration around a point, in 3D around an axis.",
+            "Acceleration around a point, in 3D around an axis.",
         ),
         key(
             "drag",
             Kind::Table(&DRAG),
             "",
             Words("–"),
-            "Resistance of air or another medium.",
+            "Drag of air or another medium.",
         ),
         key(
             "damping",
             Kind::Number(Bound::NotNegative),
             "1/s",
             Words("–"),
-            "Drag of a medium at rest: velocities decay at this rate.",
+            "Drag of a medium at rest: the rate at which velocities decay.",
         ),
     ]],
 };
 
-const CENTER: Key = key("center", Kind::Vector, "m", Required, "The point.");
+const CENTER: Key = key(
+    "center",
+    Kind::Vector,
+    "m",
+    Required,
+    "Point that the force refers to.",
+);
 
 const ACCELERATION: Key = key(
     "acceleration",
     Kind::Number(Bound::Any),
     "m/s²",
     Required,
-    "A: its size at `distance`; negative turns it round.",
+    "A: size of the acceleration at `distance`. A negative number reverses it.",
 );
 
 const DISTANCE: Key = key(
@@ -68,7 +74,7 @@ const DISTANCE: Key = key(
     Kind::Number(Bound::Positive),
     "m",
     Value("1.0"),
-    "d: the distance at which it has that size.",
+    "d: distance at which the acceleration has the size A.",
 );
 
 const SOFTENING: Key = key(
@@ -76,7 +82,7 @@ const SOFTENING: Key = key(
     Kind::Number(Bound::Positive),
     "m",
     Words("`dx`"),
-    "ε: below it the distance hardly counts.",
+    "ε: distance below which the acceleration stops growing.",
 );
 
 pub(crate) static CENTRAL: Section = Section {
@@ -91,7 +97,7 @@ pub(crate) static CENTRAL: Section = Section {
             Kind::Number(Bound::Any),
             "",
             Value("2.0"),
-            "n: 2 as of a planet, 0 the same everywhere, -1 a spring.",
+            "n: 2 for a planet, 0 for the same size everywhere, -1 for a spring.",
         ),
         SOFTENING,
     ]],
@@ -99,7 +105,7 @@ pub(crate) static CENTRAL: Section = Section {
 
 pub(crate) static VORTEX: Section = Section {
     name: "vortex",
-    header: "vortex = { .. }: the same, turned counter-clockwise by a right angle",
+    header: "vortex = { .. }: the same size, turned counter-clockwise by a right angle",
     keys: &[&[
         CENTER,
         only_3d(key(
@@ -107,7 +113,7 @@ pub(crate) static VORTEX: Section = Section {
             Kind::Vector,
             "",
             Value("[0.0, 1.0, 0.0]"),
-            "Direction of the axis, of any length.",
+            "Direction of the axis; its length does not matter.",
         )),
         ACCELERATION,
         DISTANCE,
@@ -116,7 +122,7 @@ pub(crate) static VORTEX: Section = Section {
             Kind::Number(Bound::Any),
             "",
             Value("1.0"),
-            "n: how fast it falls with the distance.",
+            "n: power by which the acceleration falls with the distance.",
         ),
         SOFTENING,
     ]],
@@ -131,7 +137,7 @@ pub(crate) static DRAG: Section = Section {
             Kind::Number(Bound::NotNegative),
             "1/s",
             Required,
-            "How fast the difference to the medium's velocity decays.",
+            "Rate at which the difference to the velocity of the medium decays.",
         ),
         key(
             "velocity",

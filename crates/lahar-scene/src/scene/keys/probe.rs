@@ -6,28 +6,28 @@ use crate::scene::key::{Bound, Key, Kind, Section, key, words};
 
 pub(crate) static PROBE: Section = Section {
     name: "probe",
-    header: "[[probes]]: exactly one besides name and rate",
+    header: "[[probes]]: exactly one key besides name and rate",
     keys: &[&[
         key(
             "name",
             Kind::Text,
             "",
             Required,
-            "Name of its file, probes/NAME.csv: letters, digits, - and _.",
+            "Name of the file probes/NAME.csv, of letters, digits, - and _.",
         ),
         key(
             "rate",
             Kind::Number(Bound::Positive),
             "1/s",
             Words("`frame_rate`"),
-            "How often it is read: at the end of the first substep at or after each moment.",
+            "Readings per second. Each is taken at the end of the first substep at or after its time.",
         ),
         key(
             "pressure",
             Kind::Table(&PRESSURE),
             "",
             Words("–"),
-            "Pressure at a point, or its mean over a plate.",
+            "Pressure at a point, or the mean pressure over a plate.",
         ),
         key(
             "velocity",
@@ -41,21 +41,21 @@ pub(crate) static PROBE: Section = Section {
             Kind::Table(&HEIGHT),
             "",
             Words("–"),
-            "Where the surface is.",
+            "Height of the surface.",
         ),
         key(
             "front",
             Kind::Table(&FRONT),
             "",
             Words("–"),
-            "How far the material has come along an axis.",
+            "Position of the front of the material along an axis.",
         ),
         key(
             "force",
             Kind::Table(&FORCE_PROBE),
             "",
             Words("–"),
-            "Mean force of the material on a wall between readings.",
+            "Mean force of the material on a wall or collider between two readings.",
         ),
     ]],
 };
@@ -69,21 +69,21 @@ pub(crate) static PRESSURE: Section = Section {
             Kind::Vector,
             "m",
             Required,
-            "The point, on a wall or inside; the middle of the plate.",
+            "The point, on a wall or inside; for a plate its middle.",
         ),
         key(
             "radius",
             Kind::Number(Bound::Positive),
             "m",
             Words("2 `dx`"),
-            "How far away particles count.",
+            "Distance up to which particles count.",
         ),
         key(
             "normal",
             Kind::Vector,
             "",
             Words("a point, no plate"),
-            "Direction across the plate, of any length.",
+            "Direction across the plate; its length does not matter.",
         ),
         key(
             "width",
@@ -105,14 +105,14 @@ pub(crate) static VELOCITY_PROBE: Section = Section {
             Kind::Number(Bound::Positive),
             "m",
             Words("2 `dx`"),
-            "How far away particles count.",
+            "Distance up to which particles count.",
         ),
     ]],
 };
 
 const AXIS: Kind = Kind::Word(&["x", "y", "z"]);
 
-const UP: Key = key("up", AXIS, "", Value("\"y\""), "The axis that points up.");
+const UP: Key = key("up", AXIS, "", Value("\"y\""), "Axis that points up.");
 
 pub(crate) static HEIGHT: Section = Section {
     name: "height",
@@ -123,7 +123,7 @@ pub(crate) static HEIGHT: Section = Section {
             Kind::Vector,
             "m",
             Words("the mean over the domain: filled volume over area"),
-            "Any point of the column.",
+            "A point in the column.",
         ),
         UP,
     ]],
@@ -133,20 +133,26 @@ pub(crate) static FRONT: Section = Section {
     name: "front",
     header: "front = { .. } in [[probes]]",
     keys: &[&[
-        key("along", AXIS, "", Value("\"x\""), "The axis it runs along."),
+        key(
+            "along",
+            AXIS,
+            "",
+            Value("\"x\""),
+            "Axis that the front moves along.",
+        ),
         key(
             "towards",
             Kind::Word(&words(&ENDS)),
             "",
             Value("\"high\""),
-            "Towards which end of it.",
+            "End of the axis that the front moves towards.",
         ),
         key(
             "depth",
             Kind::Number(Bound::Positive),
             "m",
             Required,
-            "The last column of one cell that is deeper counts.",
+            "Depth of the front: the last column of cells that is deeper is the front.",
         ),
         UP,
     ]],
@@ -160,6 +166,6 @@ pub(crate) static FORCE_PROBE: Section = Section {
         Kind::Text,
         "",
         Required,
-        "A wall of the domain: `left`, `right`, `bottom`, `top`, `back` or `front`; or a collider by its name.",
+        "A wall of the domain (`left`, `right`, `bottom`, `top`, `back` or `front`) or the name of a collider.",
     )]],
 };

@@ -6,14 +6,14 @@ use crate::scene::key::{Bound, Key, Kind, Section, key, words};
 
 pub(crate) static SHAPE: Section = Section {
     name: "shape",
-    header: "shape = { .. } in [[bodies]]: exactly one of the first ten, and what is done to it",
+    header: "shape = { .. } in [[bodies]]: exactly one of the first ten keys, and changes to it",
     keys: &[&[
         key(
             "box",
             Kind::Table(&BOX),
             "",
             Words("–"),
-            "A box along the axes.",
+            "A box with sides along the axes.",
         ),
         key(
             "ball",
@@ -27,21 +27,21 @@ pub(crate) static SHAPE: Section = Section {
             Kind::Table(&HALF_SPACE),
             "",
             Words("–"),
-            "All on one side of a plane (in 2D: of a line); needs a domain.",
+            "Everything on one side of a plane (in 2D, of a line). A body of this shape needs a domain.",
         ),
         key(
             "polygon",
             Kind::Table(&POLYGON),
             "",
             Words("–"),
-            "A polygon, in 2D only.",
+            "A polygon; 2D only.",
         ),
         key(
             "cylinder",
             Kind::Table(&ROD),
             "",
             Words("–"),
-            "A rod with flat ends, in 3D only.",
+            "A rod with flat ends; 3D only.",
         ),
         key(
             "capsule",
@@ -55,57 +55,63 @@ pub(crate) static SHAPE: Section = Section {
             Kind::OneOf(&[Kind::Text, Kind::Table(&MESH)]),
             "",
             Words("–"),
-            "The inside of a closed mesh of triangles, in 3D only: the name of an .stl or .obj file, or a table.",
+            "The inside of a closed mesh of triangles: the name of an .stl or .obj file, or a table. 3D only.",
         ),
         key(
             "union",
             Kind::Tables(&SHAPE),
             "",
             Words("–"),
-            "All that is in any of these shapes.",
+            "The points that are in any of these shapes.",
         ),
         key(
             "difference",
             Kind::Tables(&SHAPE),
             "",
             Words("–"),
-            "All that is in the first shape and in none of the others.",
+            "The points that are in the first shape and in none of the others.",
         ),
         key(
             "intersection",
             Kind::Tables(&SHAPE),
             "",
             Words("–"),
-            "All that is in every one of these shapes.",
+            "The points that are in all of these shapes.",
         ),
         key(
             "scale",
             Kind::OneOf(&[Kind::Number(Bound::Positive), Kind::Vector]),
             "",
             Words("1"),
-            "Makes the shape larger, by one factor or one for each axis.",
+            "Factor by which the shape grows, or one factor per axis.",
         ),
         key(
             "rotate",
             Kind::Rotation,
             "°",
             Words("0"),
-            "Then turns it counter-clockwise; in 3D about this axis, by as many degrees as it is long.",
+            "Counter-clockwise rotation after scaling. In 3D the direction of the vector is the axis, and its length the angle.",
         ),
         key(
             "about",
             Kind::Vector,
             "m",
             Words("the middle of the shape's bounds"),
-            "The point that `scale` and `rotate` leave where it is.",
+            "Point that `scale` and `rotate` leave in place.",
         ),
-        key("translate", Kind::Vector, "m", Words("0"), "Then moves it."),
+        key(
+            "translate",
+            Kind::Vector,
+            "m",
+            Words("0"),
+            "Translation after rotation.",
+        ),
         key(
             "copies",
             Kind::Table(&COPIES),
             "",
             Words("none"),
-            "Then repeats it.",
+            "Copies of the shape in rows along the axes.",
         ),
     ]],
 };
@@ -123,13 +129,13 @@ pub(crate) static BALL: Section = Section {
     name: "ball",
     header: "ball = { .. }",
     keys: &[&[
-        key("center", Kind::Vector, "m", Required, "Its centre."),
+        key("center", Kind::Vector, "m", Required, "Center."),
         key(
             "radius",
             Kind::Number(Bound::Positive),
             "m",
             Required,
-            "Its radius.",
+            "Radius.",
         ),
     ]],
 };
@@ -150,7 +156,7 @@ pub(crate) static HALF_SPACE: Section = Section {
             Kind::Vector,
             "",
             Required,
-            "Direction out of the body, of any length.",
+            "Direction out of the body; its length does not matter.",
         ),
     ]],
 };
@@ -163,24 +169,18 @@ pub(crate) static POLYGON: Section = Section {
         Kind::Points,
         "m",
         Required,
-        "Its corners in order, either way round; at least 3, sides must not cross.",
+        "Corners in order, clockwise or counter-clockwise. At least 3; sides must not cross.",
     )]],
 };
 
-const FROM: Key = key(
-    "from",
-    Kind::Vector,
-    "m",
-    Required,
-    "The middle of one end.",
-);
+const FROM: Key = key("from", Kind::Vector, "m", Required, "Middle of one end.");
 
 const TO: Key = key(
     "to",
     Kind::Vector,
     "m",
     Required,
-    "The middle of the other.",
+    "Middle of the other end.",
 );
 
 const RADIUS: Key = key(
@@ -188,7 +188,7 @@ const RADIUS: Key = key(
     Kind::Number(Bound::Positive),
     "m",
     Required,
-    "Distance of the surface from the line between them.",
+    "Distance of the surface from the line between `from` and `to`.",
 );
 
 pub(crate) static ROD: Section = Section {
@@ -206,28 +206,28 @@ pub(crate) static MESH: Section = Section {
             Kind::Text,
             "",
             Required,
-            "Mesh, .stl (text or binary) or .obj, found from the scene's folder.",
+            "Mesh file, .stl (text or binary) or .obj, found from the folder of the scene.",
         ),
         key(
             "up",
             Kind::Word(&words(&UP_AXES)),
             "",
             Value("\"y\""),
-            "Which axis of the file points up; z is turned to y.",
+            "Axis of the file that points up. z is turned to y.",
         ),
         key(
             "size",
             Kind::Number(Bound::Positive),
             "m",
-            Words("as in the file, taken as metres"),
-            "Longest side of its bounds.",
+            Words("as in the file, in meters"),
+            "Longest side of the bounds of the mesh.",
         ),
         key(
             "center",
             Kind::Vector,
             "m",
             Words("as in the file"),
-            "Where the middle of its bounds is put.",
+            "Position of the middle of the bounds.",
         ),
     ]],
 };
@@ -241,14 +241,14 @@ pub(crate) static COPIES: Section = Section {
             Kind::Vector,
             "",
             Required,
-            "How many along each axis, 1 or more.",
+            "Number of copies along each axis, 1 or more.",
         ),
         key(
             "step",
             Kind::Vector,
             "m",
             Required,
-            "From one to the next along each axis.",
+            "Distance between copies along each axis.",
         ),
     ]],
 };
