@@ -1,15 +1,15 @@
-//! Readers on changed files of the corpora, on any toolchain: no coverage guides it, but a million files are soon done.
+//! Runs a reader on changed files of its corpus, on any toolchain. No coverage guides it, but it reads a million files soon.
 //!
 //!     cargo run --release --manifest-path fuzz/Cargo.toml --example mutate -- csv 1000000
 //!
-//! Says how many were read, the slowest, and the most memory.
+//! Prints the number of files, the time of the slowest, and the largest memory.
 
 use std::time::{Duration, Instant};
 
 struct Random(u64);
 
 impl Random {
-    /// From 0 to `below`, not included (splitmix64).
+    /// Returns a number from 0, included, to `below`, excluded (splitmix64).
     fn below(&mut self, below: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -38,7 +38,7 @@ const WORDS: [&[u8]; 16] = [
     b"((((",
 ];
 
-/// One to eight changes of a file: bits, words, parts cut, doubled, or taken from another.
+/// Makes one to eight changes to a file: bits, words, parts cut, doubled, or taken from another file.
 fn change(bytes: &mut Vec<u8>, other: &[u8], random: &mut Random) {
     for _ in 0..=random.below(8) {
         let at = random.below(bytes.len() + 1);
@@ -92,7 +92,7 @@ fn main() {
     for number in 0..count {
         let mut bytes = corpus[random.below(corpus.len())].clone();
         change(&mut bytes, &corpus[random.below(corpus.len())], &mut random);
-        // What a panic or a hang is looked for in.
+        // Every few thousand files, show how far the run has come.
         if number % 4096 == 0 {
             eprint!("\r{target} {number}");
         }

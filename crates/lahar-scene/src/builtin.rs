@@ -14,7 +14,7 @@ pub struct Builtin {
     pub name: &'static str,
     /// The title, in a few words.
     pub title: &'static str,
-    /// What happens in the scene, in one sentence.
+    /// One sentence on what happens in the scene.
     pub summary: &'static str,
     /// Number of dimensions, 2 or 3.
     pub dimension: usize,

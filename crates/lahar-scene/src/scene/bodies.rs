@@ -13,7 +13,7 @@ use lahar::geometry::sampling::Sampling;
 use lahar::geometry::{Bounds, Primitive, Region, Shape};
 use lahar::{Material, Model};
 
-/// What bodies share: the scene that they stand in.
+/// The surroundings that all bodies of a scene share.
 pub(super) struct BodyContext<'a, const D: usize> {
     pub(super) materials: &'a [Material],
     /// The domain, or all of space: bodies are cut off there.

@@ -15,7 +15,7 @@ pub struct Built {
     pub body_particles: Vec<usize>,
     /// Number of particles of each body that were left out because they would be inside colliders.
     pub left_out: Vec<usize>,
-    /// What is suspicious, the warnings of the scene included.
+    /// All warnings, those of the scene included.
     pub warnings: Vec<String>,
 }
 

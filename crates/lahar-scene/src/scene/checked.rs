@@ -65,7 +65,7 @@ pub struct Scene {
     pub colliders: Vec<ColliderInfo>,
     /// The camera.
     pub camera: Camera,
-    /// What keys and mouse do in the window.
+    /// The controls of keys and mouse in the window.
     pub controls: Controls,
     /// The output of a run.
     pub output: OutputPlan,

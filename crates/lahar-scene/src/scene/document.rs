@@ -424,7 +424,7 @@ fn syntax(sources: &Sources, source: usize, offset: usize, error: &toml::de::Err
         end: range.end + offset,
     };
     let message = error.message().lines().collect::<Vec<_>>().join("; ");
-    // Where a line ends after "=", the message of the parser is about quotes.
+    // If a line ends after "=", the message of the parser is about quotes.
     let error = sources.error(span, "");
     let before = error.text.chars().take(error.column.saturating_sub(1));
     let rest = error.text.chars().skip(error.column.saturating_sub(1));

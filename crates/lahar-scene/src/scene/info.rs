@@ -1,4 +1,4 @@
-//! What a scene says about materials, bodies and output, for windows, pictures and runs.
+//! The materials, bodies and output of a scene, as windows, pictures and runs need them.
 
 use super::read::Reader;
 use crate::error::SceneError;

@@ -49,7 +49,7 @@ impl Scene {
     /// Reads the scene of a run back from its record, which [`Scene::resolved`] has made. `name` is the scene's.
     ///
     /// # Errors
-    /// What is wrong with the scene: a file that it names may be gone.
+    /// The fault of the scene, as in [`Scene::parse`]: a file that it names may be gone.
     pub fn recorded(
         resolved: &serde_json::Value,
         name: &str,

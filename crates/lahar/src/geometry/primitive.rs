@@ -408,7 +408,7 @@ mod tests {
                     distance <= 0.0,
                     "{primitive:?} {y:?}"
                 );
-                // Where the nearest point jumps there is no gradient; none of these points is there.
+                // There is no gradient at points from which the nearest point jumps; none of these is one.
                 for i in 0..3 {
                     let mut step = Vector([0.0; 3]);
                     step[i] = 1e-6;
