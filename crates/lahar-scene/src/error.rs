@@ -35,7 +35,7 @@ pub struct SceneError {
     pub length: usize,
     /// The text of the line.
     pub text: String,
-    /// The fault.
+    /// The fault, in words.
     pub message: String,
     /// Advice on what to do.
     pub hint: Option<String>,

@@ -16,7 +16,7 @@ use core::ops::Range;
 pub(crate) struct ExpressionError {
     /// The bytes of the text that the error points at.
     pub(crate) place: Range<usize>,
-    /// The fault.
+    /// The fault, in words.
     pub(crate) message: String,
     /// Advice on what to write instead.
     pub(crate) hint: Option<String>,

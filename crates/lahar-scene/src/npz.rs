@@ -33,11 +33,11 @@ pub struct NpzArray {
 /// The error of a file that NumPy could not have written, or that cannot be read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NpzError {
-    /// The file.
+    /// The path of the file.
     pub path: PathBuf,
     /// The array, if the error concerns one.
     pub array: Option<String>,
-    /// The fault.
+    /// The fault of the file.
     pub what: String,
 }
 
@@ -105,7 +105,7 @@ pub fn read_npy(path: impl AsRef<Path>) -> Result<NpzArray, NpzError> {
 /// [`read_npy`] from a reader.
 ///
 /// # Errors
-/// The fault.
+/// The fault of the file.
 pub(crate) fn read_array_from(mut reader: impl Read) -> Result<NpzArray, String> {
     let mut left = MAX_BYTES;
     read_array(&mut reader, String::new(), &mut left)
@@ -397,38 +397,22 @@ fn parse_header(text: &str) -> Result<Header, String> {
             .ok_or_else(broken)?
             .trim_start();
         match key {
+            "descr" if rest.starts_with('[') => {
+                return Err(
+                    "records of named fields are not read; save one array per field".to_owned(),
+                );
+            }
             "descr" => {
-                if rest.starts_with('[') {
-                    return Err(
-                        "records of named fields are not read; save one array a field".to_owned(),
-                    );
-                }
                 let (value, after) = quoted(rest).ok_or_else(broken)?;
-                descr = Some(value);
-                rest = after;
+                (descr, rest) = (Some(value), after);
             }
             "fortran_order" => {
-                let (value, after) = if let Some(after) = rest.strip_prefix("True") {
-                    (true, after)
-                } else {
-                    (false, rest.strip_prefix("False").ok_or_else(broken)?)
-                };
-                order = Some(value);
-                rest = after;
+                let (value, after) = truth(rest).ok_or_else(broken)?;
+                (order, rest) = (Some(value), after);
             }
             "shape" => {
-                let (inside, after) = rest
-                    .strip_prefix('(')
-                    .and_then(|rest| rest.split_once(')'))
-                    .ok_or_else(broken)?;
-                let extents: Result<Vec<usize>, _> = inside
-                    .split(',')
-                    .map(str::trim)
-                    .filter(|extent| !extent.is_empty())
-                    .map(|extent| extent.trim_end_matches('L').parse())
-                    .collect();
-                shape = Some(extents.map_err(|_| broken())?);
-                rest = after;
+                let (value, after) = tuple(rest).ok_or_else(broken)?;
+                (shape, rest) = (Some(value), after);
             }
             _ => return Err(broken()),
         }
@@ -436,17 +420,28 @@ fn parse_header(text: &str) -> Result<Header, String> {
     let (Some(descr), Some(fortran_order), Some(shape)) = (descr, order, shape) else {
         return Err(broken());
     };
-    let unknown = || {
+    let (kind, item_bytes, big_endian) = number_type(descr).ok_or_else(|| {
         format!(
             "numbers of type '{descr}' are not read; save as float32, float64 or an integer type"
         )
-    };
+    })?;
+    Ok(Header {
+        kind,
+        item_bytes,
+        big_endian,
+        fortran_order,
+        shape,
+    })
+}
+
+/// Returns the kind of a type of numbers, its bytes per number, and whether the first byte is the highest.
+fn number_type(descr: &str) -> Option<(Kind, usize, bool)> {
     let mut letters = descr.chars();
-    let big_endian = match letters.next() {
-        Some('<' | '|') => false,
-        Some('>') => true,
-        Some('=') => cfg!(target_endian = "big"),
-        _ => return Err(unknown()),
+    let big_endian = match letters.next()? {
+        '<' | '|' => false,
+        '>' => true,
+        '=' => cfg!(target_endian = "big"),
+        _ => return None,
     };
     let (kind, item_bytes) = match letters.as_str() {
         "f4" => (Kind::Float, 4),
@@ -459,15 +454,29 @@ fn parse_header(text: &str) -> Result<Header, String> {
         "u2" => (Kind::Unsigned, 2),
         "u4" => (Kind::Unsigned, 4),
         "u8" => (Kind::Unsigned, 8),
-        _ => return Err(unknown()),
+        _ => return None,
     };
-    Ok(Header {
-        kind,
-        item_bytes,
-        big_endian,
-        fortran_order,
-        shape,
-    })
+    Some((kind, item_bytes, big_endian))
+}
+
+/// Returns the word True or False at the start of `text`, and the text after it.
+fn truth(text: &str) -> Option<(bool, &str)> {
+    match text.strip_prefix("True") {
+        Some(after) => Some((true, after)),
+        None => Some((false, text.strip_prefix("False")?)),
+    }
+}
+
+/// Returns the tuple of whole numbers at the start of `text`, and the text after it.
+fn tuple(text: &str) -> Option<(Vec<usize>, &str)> {
+    let (inside, after) = text.strip_prefix('(')?.split_once(')')?;
+    let numbers: Result<Vec<usize>, _> = inside
+        .split(',')
+        .map(str::trim)
+        .filter(|number| !number.is_empty())
+        .map(|number| number.trim_end_matches('L').parse())
+        .collect();
+    Some((numbers.ok()?, after))
 }
 
 /// Returns the quoted word at the start of `text`, and the text after it.

@@ -16,13 +16,13 @@ use lahar::{Field, StartingValues};
 /// A list of particles: columns with one entry per particle. Columns that the file does not have are empty.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParticleList<const D: usize> {
-    /// Positions \[m\].
+    /// Positions of the particles \[m\].
     pub position: Vec<[f64; D]>,
-    /// Velocities \[m/s\].
+    /// Velocities of the particles \[m/s\].
     pub velocity: Vec<[f64; D]>,
     /// Rest volumes \[m³; m² in 2D\].
     pub volume: Vec<f64>,
-    /// Masses \[kg\].
+    /// Masses of the particles \[kg\].
     pub mass: Vec<f64>,
     /// The Jacobians J = V/V⁰.
     pub jacobian: Vec<f64>,

@@ -85,6 +85,22 @@ struct Property {
     kind: Type,
 }
 
+impl Property {
+    /// Reads a property from the words of its type and its name.
+    fn parse(types: &[&str], name: &str) -> Option<Self> {
+        let (length, kind) = match types {
+            ["list", length, kind] => (Some(Type::find(length)?), kind),
+            [kind] => (None, kind),
+            _ => return None,
+        };
+        Some(Self {
+            name: name.to_owned(),
+            length,
+            kind: Type::find(kind)?,
+        })
+    }
+}
+
 #[derive(Clone, Debug)]
 struct Element {
     name: String,
@@ -330,15 +346,8 @@ fn parse_header(bytes: &[u8], name: &str) -> Result<Header, SceneError> {
                 }),
                 Err(_) => return bad("the number of elements is not a whole number"),
             },
-            ["property", .., property] => {
-                let types: Option<Vec<Type>> = match words[1..words.len() - 1] {
-                    ["list", length, kind] => Type::find(length)
-                        .zip(Type::find(kind))
-                        .map(|(a, b)| vec![a, b]),
-                    [kind] => Type::find(kind).map(|kind| vec![kind]),
-                    _ => None,
-                };
-                let Some(types) = types else {
+            ["property", ref types @ .., property] => {
+                let Some(property) = Property::parse(types, property) else {
                     return bad(
                         "a property is written: property TYPE NAME, with TYPE char, uchar, short, ushort, int, uint, float or double",
                     );
@@ -346,11 +355,7 @@ fn parse_header(bytes: &[u8], name: &str) -> Result<Header, SceneError> {
                 let Some(element) = elements.last_mut() else {
                     return bad("a property before any element");
                 };
-                element.properties.push(Property {
-                    name: property.to_owned(),
-                    length: (types.len() == 2).then(|| types[0]),
-                    kind: types[types.len() - 1],
-                });
+                element.properties.push(property);
             }
             _ => return bad("this is no line of a PLY header"),
         }

@@ -40,35 +40,9 @@ pub(crate) fn from_arrays<const D: usize>(arrays: &[NpzArray]) -> Result<Particl
         ));
     };
     let count = position.shape.first().copied().unwrap_or(0);
-    // The numbers of an array with this shape per particle; `None` if there is no such array.
-    let numbers =
-        |name: &str, shape: &[usize], positive: bool| -> Result<Option<Vec<f64>>, String> {
-            let Some(array) = arrays.iter().find(|array| array.name == name) else {
-                return Ok(None);
-            };
-            let wanted: Vec<usize> = core::iter::once(count)
-                .chain(shape.iter().copied())
-                .collect();
-            if array.shape != wanted {
-                return Err(format!(
-                    "array \"{name}\" has shape {:?}; {wanted:?} is needed",
-                    array.shape
-                ));
-            }
-            let values = array.data.to_f64();
-            let width = shape.iter().product::<usize>().max(1);
-            match values
-                .iter()
-                .position(|value| !value.is_finite() || (positive && *value <= 0.0))
-            {
-                Some(at) => Err(format!(
-                    "array \"{name}\": {} is no value for a particle (row {})",
-                    values[at],
-                    at / width
-                )),
-                None => Ok(Some(values)),
-            }
-        };
+    let numbers = |name: &str, shape: &[usize], positive: bool| {
+        numbers_of(arrays, name, (count, shape), positive)
+    };
     let vectors = |name: &str| -> Result<Vec<[f64; D]>, String> {
         let values = numbers(name, &[D], false)?.unwrap_or_default();
         Ok(values
@@ -113,6 +87,40 @@ pub(crate) fn from_arrays<const D: usize>(arrays: &[NpzArray]) -> Result<Particl
             .collect::<Result<_, _>>()?,
         warnings: Vec::new(),
     })
+}
+
+/// Returns the numbers of the array `name`, which must have this shape per particle; `None` if there is no such array.
+fn numbers_of(
+    arrays: &[NpzArray],
+    name: &str,
+    (count, shape): (usize, &[usize]),
+    positive: bool,
+) -> Result<Option<Vec<f64>>, String> {
+    let Some(array) = arrays.iter().find(|array| array.name == name) else {
+        return Ok(None);
+    };
+    let wanted: Vec<usize> = core::iter::once(count)
+        .chain(shape.iter().copied())
+        .collect();
+    if array.shape != wanted {
+        return Err(format!(
+            "array \"{name}\" has shape {:?}; {wanted:?} is needed",
+            array.shape
+        ));
+    }
+    let values = array.data.to_f64();
+    let width = shape.iter().product::<usize>().max(1);
+    match values
+        .iter()
+        .position(|value| !value.is_finite() || (positive && *value <= 0.0))
+    {
+        Some(at) => Err(format!(
+            "array \"{name}\": {} is no value for a particle (row {})",
+            values[at],
+            at / width
+        )),
+        None => Ok(Some(values)),
+    }
 }
 
 #[cfg(test)]

@@ -177,62 +177,94 @@ impl Check<'_> {
         name: &str,
         kind: Kind,
     ) -> Result<(), SceneError> {
-        let span = node.span;
-        let wrong = |found: &Value| {
-            let error = self.sources.error(
-                span,
-                format!(
-                    "\"{name}\" must be {}, found {}",
-                    kind.words(self.dimension),
-                    found.describe()
-                ),
-            );
-            match found {
-                Value::Text(text)
-                    if matches!(kind, Kind::Number(_) | Kind::Integer(..))
-                        && text.trim().parse::<f64>().is_ok() =>
-                {
-                    error.hint("write it without quotes")
-                }
-                Value::Text(_) if matches!(kind, Kind::Rotation | Kind::Matrix) => {
-                    error.hint(no_formulas(kind, self.dimension))
-                }
-                _ => error,
+        match kind {
+            Kind::OneOf(kinds) => self.one_of(node, key_span, name, kinds),
+            Kind::Table(_) | Kind::Tables(_) | Kind::Materials => {
+                self.tables(node, key_span, name, kind)
             }
+            Kind::Rotation if self.dimension == 2 => self.scalar(node, name, kind),
+            Kind::Vector
+            | Kind::Formulas(_)
+            | Kind::Rotation
+            | Kind::Matrix
+            | Kind::Points
+            | Kind::Interval
+            | Kind::Size
+            | Kind::Words(_)
+            | Kind::Fields => self.list(node, name, kind),
+            Kind::Text
+            | Kind::Color
+            | Kind::Number(_)
+            | Kind::Flag
+            | Kind::Integer(..)
+            | Kind::Word(_)
+            | Kind::Later => self.scalar(node, name, kind),
+        }
+    }
+
+    /// Makes the error of a value that is not of its kind.
+    fn wrong(&self, found: &Value, span: Span, name: &str, kind: Kind) -> SceneError {
+        let message = format!(
+            "\"{name}\" must be {}, found {}",
+            kind.words(self.dimension),
+            found.describe()
+        );
+        let error = self.sources.error(span, message);
+        let Value::Text(text) = found else {
+            return error;
         };
-        match (kind, &mut node.value) {
-            (Kind::Text, Value::Text(_)) => Ok(()),
-            (Kind::Flag, Value::Flag(_)) => Ok(()),
-            (Kind::Color, Value::Text(text)) if color(text).is_some() => Ok(()),
-            (Kind::Number(bound), value) => match value.as_number() {
-                Some(number) if bound.holds(number) => Ok(()),
-                _ => Err(wrong(value)),
-            },
-            (Kind::Integer(low, high), Value::Integer(number)) if (low..=high).contains(number) => {
-                Ok(())
+        match kind {
+            Kind::Number(_) | Kind::Integer(..) if text.trim().parse::<f64>().is_ok() => {
+                error.hint("write it without quotes")
             }
-            (Kind::Integer(low, high), Value::Number(number))
-                if number.fract() == 0.0 && *number >= low as f64 && *number <= high as f64 =>
+            Kind::Vector | Kind::Rotation | Kind::Matrix => {
+                error.hint(no_formulas(kind, self.dimension))
+            }
+            Kind::Formulas(_) => error.hint("write an expression for each component, in brackets"),
+            _ => error,
+        }
+    }
+
+    /// Checks a value that is no list and no table. A number of a whole kind becomes a whole number.
+    fn scalar(&self, node: &mut Node, name: &str, kind: Kind) -> Result<(), SceneError> {
+        let is_good = match (kind, &node.value) {
+            (Kind::Text, Value::Text(_)) | (Kind::Flag, Value::Flag(_)) => true,
+            (Kind::Color, Value::Text(text)) => color(text).is_some(),
+            (Kind::Word(words), Value::Text(text)) => {
+                return self.word(text, words, node.span, name);
+            }
+            (Kind::Number(bound), value) => value.as_number().is_some_and(|n| bound.allows(n)),
+            (Kind::Rotation, value) => value.as_number().is_some_and(f64::is_finite),
+            (Kind::Integer(low, high), Value::Integer(number)) => (low..=high).contains(number),
+            (Kind::Integer(low, high), &Value::Number(number))
+                if number.fract() == 0.0 && (low as f64..=high as f64).contains(&number) =>
             {
-                node.value = Value::Integer(*number as i64);
-                Ok(())
+                node.value = Value::Integer(number as i64);
+                true
             }
-            (Kind::Vector, Value::List(list)) => {
-                self.numbers(list, span, name, kind, self.dimension, true)
-            }
-            (Kind::Formulas(variables), Value::List(list)) => {
-                self.formulas(list, span, name, variables)
-            }
-            (Kind::Rotation, value) if self.dimension == 2 => match value.as_number() {
-                Some(number) if number.is_finite() => Ok(()),
-                _ => Err(wrong(value)),
-            },
-            (Kind::Rotation, Value::List(list)) => self.numbers(list, span, name, kind, 3, true),
-            (Kind::Matrix, Value::List(rows)) if rows.len() == self.dimension => {
-                self.rows(rows, name, kind)
-            }
-            (Kind::Points, Value::List(points)) => self.rows(points, name, kind),
-            (Kind::Interval, Value::List(list)) => {
+            _ => false,
+        };
+        if is_good {
+            Ok(())
+        } else {
+            Err(self.wrong(&node.value, node.span, name, kind))
+        }
+    }
+
+    /// Checks a list of numbers or words.
+    fn list(&self, node: &Node, name: &str, kind: Kind) -> Result<(), SceneError> {
+        let span = node.span;
+        let wrong = || self.wrong(&node.value, span, name, kind);
+        let Value::List(list) = &node.value else {
+            return Err(wrong());
+        };
+        match kind {
+            Kind::Vector => self.numbers(list, span, name, kind, self.dimension, true),
+            Kind::Formulas(variables) => self.formulas(list, span, name, variables),
+            Kind::Rotation => self.numbers(list, span, name, kind, 3, true),
+            Kind::Matrix if list.len() == self.dimension => self.rows(list, name, kind),
+            Kind::Points => self.rows(list, name, kind),
+            Kind::Interval => {
                 self.numbers(list, span, name, kind, 2, false)?;
                 match (list[0].value.as_number(), list[1].value.as_number()) {
                     (Some(low), Some(high)) if low <= high && low >= 0.0 => Ok(()),
@@ -242,81 +274,81 @@ impl Check<'_> {
                     )),
                 }
             }
-            (Kind::Size, Value::List(list)) => {
+            Kind::Size => {
                 let fits = |node: &Node| matches!(node.value, Value::Integer(1..=16384));
-                if list.len() == 2 && list.iter().all(fits) {
-                    Ok(())
-                } else {
-                    Err(wrong(&node.value))
-                }
+                let is_good = list.len() == 2 && list.iter().all(fits);
+                if is_good { Ok(()) } else { Err(wrong()) }
             }
-            (Kind::Word(words), Value::Text(text)) => self.word(text, words, span, name),
-            (Kind::Words(words), Value::List(list)) => {
-                list.iter().try_for_each(|item| match &item.value {
-                    Value::Text(text) => self.word(text, words, item.span, name),
-                    other => Err(self.sources.error(
-                        item.span,
-                        format!(
-                            "\"{name}\" must be {}, found {}",
-                            kind.words(self.dimension),
-                            other.describe()
-                        ),
-                    )),
-                })
+            Kind::Words(words) => self.words(list, name, kind, words),
+            Kind::Fields => {
+                let fields = lahar::particles::FIELDS.iter();
+                let names: Vec<&str> = fields.map(|field| field.name).collect();
+                self.words(list, name, kind, &names)
             }
-            (Kind::Fields, Value::List(list)) => {
-                let names: Vec<&str> = lahar::particles::FIELDS
-                    .iter()
-                    .map(|field| field.name)
-                    .collect();
-                list.iter().try_for_each(|item| match &item.value {
-                    Value::Text(text) => self.word(text, &names, item.span, name),
-                    other => Err(self.sources.error(
-                        item.span,
-                        format!(
-                            "\"{name}\" must be {}, found {}",
-                            kind.words(self.dimension),
-                            other.describe()
-                        ),
-                    )),
-                })
-            }
-            (Kind::OneOf(kinds), value) => match kinds.iter().find(|kind| accepts(**kind, value)) {
-                Some(one) => self
-                    .kind(node, key_span, name, *one)
-                    .map_err(|error| match one {
-                        Kind::Table(_) => error,
-                        _ => SceneError {
-                            message: wrong(&node.value).message,
-                            ..error
-                        },
-                    }),
-                None => Err(wrong(value)),
-            },
+            _ => Err(wrong()),
+        }
+    }
+
+    /// Checks a list of words.
+    fn words(
+        &self,
+        list: &[Node],
+        name: &str,
+        kind: Kind,
+        words: &[&str],
+    ) -> Result<(), SceneError> {
+        list.iter().try_for_each(|item| match &item.value {
+            Value::Text(text) => self.word(text, words, item.span, name),
+            other => Err(self.wrong(other, item.span, name, kind)),
+        })
+    }
+
+    /// Checks a table, or tables.
+    fn tables(
+        &self,
+        node: &mut Node,
+        key_span: Span,
+        name: &str,
+        kind: Kind,
+    ) -> Result<(), SceneError> {
+        let span = node.span;
+        match (kind, &mut node.value) {
             (Kind::Table(section), Value::Table(table)) => self.section(table, section, key_span),
-            (Kind::Tables(section), Value::List(list)) => {
-                if list.is_empty() {
-                    return Err(self.sources.error(span, format!("\"{name}\" is empty")));
-                }
-                list.iter_mut()
-                    .try_for_each(|item| self.kind(item, item.span, name, Kind::Table(section)))
+            (Kind::Tables(_), Value::List(list)) if list.is_empty() => {
+                Err(self.sources.error(span, format!("\"{name}\" is empty")))
             }
+            (Kind::Tables(section), Value::List(list)) => list
+                .iter_mut()
+                .try_for_each(|item| self.kind(item, item.span, name, Kind::Table(section))),
             (Kind::Tables(_), Value::Table(_)) => Err(self
                 .sources
                 .error(key_span, format!("\"{name}\" must be a list of tables"))
                 .hint(format!("write [[{name}]] with two brackets"))),
             (Kind::Materials, Value::Table(table)) => self.materials(table, span),
-            (_, value) => {
-                let error = wrong(value);
-                Err(match (kind, value) {
-                    (Kind::Formulas(_), Value::Text(_)) => {
-                        error.hint("write an expression for each component, in brackets")
-                    }
-                    (Kind::Vector, Value::Text(_)) => error.hint(no_formulas(kind, self.dimension)),
-                    _ => error,
-                })
-            }
+            (_, value) => Err(self.wrong(value, span, name, kind)),
         }
+    }
+
+    /// Checks a value of one of several kinds: the first one with its TOML type.
+    fn one_of(
+        &self,
+        node: &mut Node,
+        key_span: Span,
+        name: &str,
+        kinds: &'static [Kind],
+    ) -> Result<(), SceneError> {
+        let all = Kind::OneOf(kinds);
+        let Some(one) = kinds.iter().find(|kind| accepts(**kind, &node.value)) else {
+            return Err(self.wrong(&node.value, node.span, name, all));
+        };
+        let checked = self.kind(node, key_span, name, *one);
+        checked.map_err(|error| match one {
+            Kind::Table(_) => error,
+            _ => SceneError {
+                message: self.wrong(&node.value, node.span, name, all).message,
+                ..error
+            },
+        })
     }
 
     /// Checks numbers or expressions, one per dimension.

@@ -43,7 +43,7 @@ pub struct Scene {
     pub overrides: Vec<(String, String)>,
     /// The files that it names.
     pub files: Vec<SceneFile>,
-    /// The title.
+    /// The title of the scene.
     pub title: String,
     /// Number of dimensions, 2 or 3.
     pub dimension: usize,
@@ -63,7 +63,7 @@ pub struct Scene {
     pub bodies: Vec<BodyInfo>,
     /// The colliders, in the order of the scene.
     pub colliders: Vec<ColliderInfo>,
-    /// The camera.
+    /// The camera of windows and pictures.
     pub camera: Camera,
     /// The controls of keys and mouse in the window.
     pub controls: Controls,

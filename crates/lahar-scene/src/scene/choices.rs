@@ -33,7 +33,7 @@ pub(super) const WALL_STYLES: [(&str, WallStyle); 2] = [
 pub(super) const PRECISIONS: [(&str, Precision); 2] =
     [("f32", Precision::F32), ("f64", Precision::F64)];
 
-/// Kernels.
+/// Kernels, the weight functions.
 pub(super) const KERNELS: [(&str, Kernel); 3] = [
     ("quadratic", Kernel::Quadratic),
     ("cubic", Kernel::Cubic),

@@ -1,4 +1,4 @@
-//! Reads colliders.
+//! Reads the colliders of a scene.
 
 use super::contact::contact_with_friction;
 use super::document::{Sources, Span, Value, from_json};
@@ -17,7 +17,7 @@ const SIDES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
 /// A collider of a scene, as windows and pictures show it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColliderInfo {
-    /// The name.
+    /// The name in the scene.
     pub name: String,
     /// The color, if the scene gives one.
     pub color: Option<[u8; 3]>,

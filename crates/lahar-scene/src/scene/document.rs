@@ -42,11 +42,11 @@ impl Sources {
     /// Returns the span of the bytes `part` of `text`, a value at `span`. Where the value is spelled with escapes, it
     /// returns all of `span`.
     pub(crate) fn within(&self, span: Span, text: &str, part: core::ops::Range<usize>) -> Span {
-        let spelt = self
+        let spelled = self
             .0
             .get(span.source)
             .and_then(|source| source.text.get(span.start..span.end));
-        match spelt.and_then(|spelt| spelt.find(text)) {
+        match spelled.and_then(|spelled| spelled.find(text)) {
             Some(at) if !text.is_empty() => Span {
                 source: span.source,
                 start: span.start + at + part.start,

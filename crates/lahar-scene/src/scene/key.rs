@@ -53,14 +53,14 @@ pub(crate) enum WhenAbsent {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Kind {
     Text,
-    /// "#rrggbb".
+    /// A color, "#rrggbb".
     Color,
     Number(Bound),
     /// `true` or `false`.
     Flag,
     /// A whole number between two bounds, both included.
     Integer(i64, i64),
-    /// D numbers.
+    /// A list of D numbers.
     Vector,
     /// D numbers or expressions.
     Formulas(Variables),
@@ -102,7 +102,7 @@ pub(crate) enum Bound {
 }
 
 impl Bound {
-    pub(crate) fn holds(self, number: f64) -> bool {
+    pub(crate) fn allows(self, number: f64) -> bool {
         number.is_finite()
             && match self {
                 Self::Any => true,

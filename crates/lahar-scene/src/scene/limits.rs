@@ -13,7 +13,7 @@ impl Limits {
 }
 
 impl Default for Limits {
-    /// 16 GB.
+    /// Allows 16 GB.
     fn default() -> Self {
         Self {
             memory: 16_000_000_000,

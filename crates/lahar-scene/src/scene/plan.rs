@@ -32,12 +32,12 @@ pub(crate) struct Plan<const D: usize> {
     /// Indices of the fluids whose speed of sound the scene leaves open.
     pub(crate) automatic: Vec<usize>,
     pub(crate) bodies: Vec<Body<D>>,
-    /// The probes.
+    /// The probes of the scene.
     pub(crate) probes: Vec<Probe<D>>,
     pub(crate) warnings: Vec<String>,
 }
 
-/// A body.
+/// A body of the scene.
 #[derive(Clone, Debug)]
 pub(crate) struct Body<const D: usize> {
     pub(crate) name: String,

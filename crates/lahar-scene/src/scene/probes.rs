@@ -1,4 +1,4 @@
-//! Reads probes.
+//! Reads the probes of a scene.
 
 use super::choices::ENDS;
 use super::key::words;

@@ -21,7 +21,7 @@ pub enum Sampling {
     /// One random point in each cell of that lattice.
     #[default]
     Jittered,
-    /// Random points.
+    /// Points drawn at random.
     Random,
     /// Random points that keep a distance from each other (dart throwing). The distance shrinks until the
     /// number of points is reached.
@@ -29,7 +29,7 @@ pub enum Sampling {
 }
 
 impl Sampling {
-    /// All rules.
+    /// All of the rules.
     pub const ALL: [Self; 4] = [Self::Lattice, Self::Jittered, Self::Random, Self::Poisson];
 
     /// Returns the word for the rule in scene files.

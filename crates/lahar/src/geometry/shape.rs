@@ -40,7 +40,7 @@ pub enum Shape<const D: usize> {
     Transformed {
         /// The shape before the transform.
         shape: Box<Shape<D>>,
-        /// The transform.
+        /// The transform of the shape.
         transform: Transform<D>,
         /// A box around the transformed shape \[m\].
         bounds: Bounds<D>,
@@ -50,7 +50,7 @@ pub enum Shape<const D: usize> {
 /// The part of a shape that keeps it from being a union of [`Primitive`]s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotPrimitive {
-    /// A mesh.
+    /// A mesh of triangles.
     Mesh,
     /// An intersection of shapes.
     Intersection,
