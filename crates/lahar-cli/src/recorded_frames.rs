@@ -78,10 +78,10 @@ pub(crate) fn scene(
     Ok(Scene::recorded(&record.scene, &record.scene_name, changes)?)
 }
 
-/// Whether all frames were worked on.
+/// The end of the work on a choice of frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Completion {
-    /// All were.
+    /// All frames were worked on.
     Complete,
     /// Ctrl-C or SIGTERM came first.
     Interrupted,

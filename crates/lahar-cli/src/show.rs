@@ -113,98 +113,103 @@ pub(crate) fn describe(scene: &Scene, isa: Isa) -> Result<Value, CliError> {
 
 /// Formats the description for people.
 pub(crate) fn text(value: &Value) -> String {
-    let number = |key: &str| value[key].as_f64().unwrap_or(f64::NAN);
-    let word = |key: &str| value[key].as_str().unwrap_or_default().to_owned();
-    let mut lines = vec![format!(
-        "{}: {} ({}D, {})",
-        word("name"),
-        word("title"),
+    let mut text = format!(
+        "{}: {} ({}D, {})\n",
+        plain(&value["name"]),
+        plain(&value["title"]),
         value["dimension"],
-        word("precision")
-    )];
-    let mut line = |name: &str, text: String| lines.push(format!("  {name:<12}{text}"));
-    let list = |value: &Value| {
-        let parts: Vec<String> = value
-            .as_array()
-            .into_iter()
-            .flatten()
-            .map(ToString::to_string)
-            .collect();
-        format!("({})", parts.join(", "))
+        plain(&value["precision"])
+    );
+    for (name, line) in parts(value).into_iter().chain(costs(value)) {
+        text += &format!("  {name:<12}{line}\n");
+    }
+    for warning in list(&value["warnings"]) {
+        text += &format!("warning: {}\n", plain(warning));
+    }
+    text
+}
+
+/// The lines about domain, bodies, colliders and materials, each with its name.
+fn parts(value: &Value) -> Vec<(&'static str, String)> {
+    let domain = match &value["domain"] {
+        Value::Null => "unbounded".to_owned(),
+        domain => format!("{} to {} m", vector(&domain["min"]), vector(&domain["max"])),
     };
-    line(
-        "domain",
-        match &value["domain"] {
-            Value::Null => "unbounded".to_owned(),
-            domain => format!("{} to {} m", list(&domain["min"]), list(&domain["max"])),
-        },
-    );
-    line("dx", format!("{} m", value["dx"]));
-    line("particles", value["particles"].to_string());
-    for body in value["bodies"].as_array().into_iter().flatten() {
-        line(
-            "",
-            format!(
-                "{}: {} of {}{}",
-                plain(&body["name"]),
-                body["particles"],
-                plain(&body["material"]),
-                match body["left_out"].as_u64() {
-                    None | Some(0) => String::new(),
-                    Some(count) => format!(", {count} left out inside colliders"),
-                }
-            ),
-        );
+    let mut lines = vec![
+        ("domain", domain),
+        ("dx", format!("{} m", value["dx"])),
+        ("particles", value["particles"].to_string()),
+    ];
+    for body in list(&value["bodies"]) {
+        let left_out = match body["left_out"].as_u64() {
+            None | Some(0) => String::new(),
+            Some(count) => format!(", {count} left out inside colliders"),
+        };
+        let (name, material) = (plain(&body["name"]), plain(&body["material"]));
+        let particles = &body["particles"];
+        lines.push(("", format!("{name}: {particles} of {material}{left_out}")));
     }
-    for collider in value["colliders"].as_array().into_iter().flatten() {
+    for collider in list(&value["colliders"]) {
         let (name, what) = (plain(&collider["name"]), plain(&collider["what"]));
-        line("collider", format!("{name}: {what}"));
+        lines.push(("collider", format!("{name}: {what}")));
     }
-    for material in value["materials"].as_array().into_iter().flatten() {
-        line(
-            "material",
-            format!(
-                "{}: {}, {} kg/m³, sound at {:.4} m/s",
-                plain(&material["name"]),
-                plain(&material["model"]),
-                material["density"],
-                material["sound_speed"].as_f64().unwrap_or(f64::NAN),
-            ),
+    for material in list(&value["materials"]) {
+        let line = format!(
+            "{}: {}, {} kg/m³, sound at {:.4} m/s",
+            plain(&material["name"]),
+            plain(&material["model"]),
+            material["density"],
+            number(&material["sound_speed"]),
         );
+        lines.push(("material", line));
     }
-    line(
-        "nodes",
-        format!("{} in {} blocks", value["nodes"], value["blocks"]),
+    lines
+}
+
+/// The lines about nodes, memory and time, each with its name.
+fn costs(value: &Value) -> Vec<(&'static str, String)> {
+    let bytes = |key: &str| with_prefix(number(&value[key]));
+    let particle_steps = number(&value["substeps_estimate"]) * number(&value["particles"]);
+    let memory = format!(
+        "{}B ({}B particles, {}B grid, {}B copy for retries)",
+        bytes("memory_bytes"),
+        bytes("particle_bytes"),
+        bytes("grid_bytes"),
+        bytes("retry_bytes"),
     );
-    line(
-        "memory",
-        format!(
-            "{}B ({}B particles, {}B grid, {}B copy for retries)",
-            with_prefix(number("memory_bytes")),
-            with_prefix(number("particle_bytes")),
-            with_prefix(number("grid_bytes")),
-            with_prefix(number("retry_bytes")),
-        ),
+    let run = format!(
+        "{} s in {} frames, about {} substeps, {} particle-steps",
+        value["duration"],
+        value["frames"],
+        value["substeps_estimate"],
+        with_prefix(particle_steps),
     );
-    line(
-        "dt",
-        format!("{:.4e} s, limited by {}", number("dt"), word("dt_limit")),
-    );
-    line(
-        "run",
-        format!(
-            "{} s in {} frames, about {} substeps, {} particle-steps",
-            value["duration"],
-            value["frames"],
-            value["substeps_estimate"],
-            with_prefix(number("substeps_estimate") * number("particles")),
-        ),
-    );
-    line("computed by", word("isa"));
-    for warning in value["warnings"].as_array().into_iter().flatten() {
-        lines.push(format!("warning: {}", plain(warning)));
-    }
-    lines.join("\n") + "\n"
+    let limit = plain(&value["dt_limit"]);
+    let nodes = format!("{} in {} blocks", value["nodes"], value["blocks"]);
+    let dt = format!("{:.4e} s, limited by {limit}", number(&value["dt"]));
+    vec![
+        ("nodes", nodes),
+        ("memory", memory),
+        ("dt", dt),
+        ("run", run),
+        ("computed by", plain(&value["isa"])),
+    ]
+}
+
+/// The entries of a JSON list.
+fn list(value: &Value) -> impl Iterator<Item = &Value> {
+    value.as_array().into_iter().flatten()
+}
+
+/// A JSON list of numbers as a vector.
+fn vector(value: &Value) -> String {
+    let numbers: Vec<String> = list(value).map(ToString::to_string).collect();
+    format!("({})", numbers.join(", "))
+}
+
+/// A JSON number.
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
 }
 
 /// The text of a JSON string.
