@@ -231,7 +231,7 @@ pub(super) fn read_frames(
             let error = scene.error_at(
                 "frame_rate",
                 format!(
-                    "{substeps} substeps of {dt} s come to {comes_to} frames a second, not {rate}"
+                    "{substeps} substeps of {dt} s come to {comes_to} frames per second, not {rate}"
                 ),
             );
             Err(error.hint("remove frame_rate or substeps_per_frame"))

@@ -43,7 +43,7 @@ impl<const D: usize> Plan<D> {
             };
             let few = if D == 2 { 2.0 } else { 4.0 };
             if per_cell < few {
-                warnings.push(format!("body \"{}\" has {per_cell:.2} particles a cell: below {few} it may fall apart into grains", body.name));
+                warnings.push(format!("body \"{}\" has {per_cell:.2} particles per cell: below {few} it may fall apart into grains", body.name));
             }
             let thin = (0..D)
                 .map(|i| region.bounds().side(i))

@@ -421,7 +421,7 @@ const BROKEN: &[(&str, &str, &str)] = &[
     ),
     ("10¹² particles", "dx = 0.05", "dx = 1.0e-6"),
     (
-        "10¹² particles a cell",
+        "10¹² particles per cell",
         "material = \"water\"",
         "material = \"water\"\nparticles_per_cell = 1.0e10",
     ),

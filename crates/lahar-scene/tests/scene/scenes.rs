@@ -296,7 +296,7 @@ fn suspicious_scenes_run_with_warnings() {
     warned(
         COLUMN,
         &[("bodies.column.particles_per_cell", "1")],
-        "particles a cell",
+        "particles per cell",
     );
     warned(
         COLUMN,
