@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use lahar_io::output::OutputError;
+use lahar_lab::shell;
 use lahar_scene::error::SceneError;
 use serde_json::{Value, json};
 
-use crate::{shell, terminal};
+use crate::terminal;
 
 /// Exit code: the simulation or the machine failed, or a validation case misses its target.
 pub(crate) const FAILED: u8 = 1;

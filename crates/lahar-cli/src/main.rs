@@ -31,7 +31,6 @@ mod resume;
 mod run;
 mod run_plan;
 mod schema;
-mod shell;
 mod show;
 mod summary;
 mod terminal;

@@ -5,10 +5,11 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use lahar_lab::shell;
 use lahar_scene::builtin::{self, Builtin};
 
 use crate::error::CliError;
-use crate::{args, shell, terminal};
+use crate::{args, terminal};
 
 /// Writes a commented dam break, or the built-in scene that `args.from` names and the files that it needs.
 pub(crate) fn new(args: &args::New) -> Result<ExitCode, CliError> {

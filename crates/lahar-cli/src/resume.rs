@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use lahar::Checkpoint;
 use lahar_io::checkpoint::{Header, Newest, Start, StartError, Store};
 use lahar_io::output::{Record, RunFolder, Status};
+use lahar_lab::shell;
 use lahar_scene::scene::Scene;
 use serde_json::json;
 
@@ -13,7 +14,7 @@ use crate::args;
 use crate::error::CliError;
 use crate::run::{self, Origin};
 use crate::run_plan::RunPlan;
-use crate::{shell, terminal};
+use crate::terminal;
 
 /// Resumes the run in `args.folder`.
 pub(crate) fn resume(args: &args::Resume) -> Result<ExitCode, CliError> {
@@ -126,7 +127,7 @@ fn checkpoint(
     let Some((_, mut header, checkpoint)) = found else {
         if is_finished && !refused.is_empty() {
             return Err(CliError::Usage(format!(
-                "{} is finished and none of its checkpoints can be used, so it cannot go on beyond its end; `lahar run` into another folder makes a longer run",
+                "{} is finished and none of its checkpoints can be used, so it cannot continue beyond its end; `lahar run` into another folder makes a longer run",
                 folder.path().display()
             )));
         }

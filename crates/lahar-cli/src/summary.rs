@@ -5,12 +5,13 @@ use std::process::ExitCode;
 use lahar_io::checkpoint::Progress;
 use lahar_io::output::{OutputCounts, Record, RunFolder};
 use lahar_lab::numbers::{duration, with_prefix};
+use lahar_lab::shell;
 use serde_json::{Value, json};
 
 use crate::error::CliError;
 use crate::frame_loop::End;
 use crate::run_plan::RunPlan;
-use crate::{shell, show, terminal};
+use crate::{show, terminal};
 
 /// Returns the line that announces a run. `from` is the progress of a run that is resumed.
 pub(crate) fn announcement(

@@ -5,10 +5,11 @@ use std::process::ExitCode;
 
 use lahar::Isa;
 use lahar_io::files::{make_folder, write_file};
+use lahar_lab::shell;
 use lahar_lab::validate::{self, Case, Options, Outcome};
 
 use crate::error::{CliError, FAILED};
-use crate::{args, clock, shell, terminal, threads};
+use crate::{args, clock, terminal, threads};
 
 /// The folder of the plots, inside the folder of the report.
 const IMAGES: &str = "images/validation";

@@ -5,7 +5,7 @@
 //! - [`validate`] runs scenes and compares numbers with exact solutions, experiments and other programs.
 //! - [`mod@bench`] measures particle-steps per second.
 //! - [`run_plots`] and [`run_page`] draw the measurements of runs, and join them to a page of HTML.
-//! - [`plot`] draws curves as SVG; [`numbers`] writes numbers for people.
+//! - [`plot`] draws curves as SVG; [`numbers`] writes numbers for people; [`shell`] quotes words of commands.
 //!
 //! # Tour
 //!
@@ -33,4 +33,5 @@ pub mod numbers;
 pub mod plot;
 pub mod run_page;
 pub mod run_plots;
+pub mod shell;
 pub mod validate;

@@ -8,6 +8,7 @@ use lahar_scene::driver::{Driver, Event};
 
 use super::{Case, Finding, Options, Outcome};
 use crate::plot::{Line, Plot};
+use crate::shell::quoted;
 use lahar_scene::error::SceneError;
 use lahar_scene::scene::Scene;
 
@@ -113,7 +114,7 @@ impl<'a> Session<'a> {
         let set: Vec<(String, String)> = own.chain(self.options.set.iter().cloned()).collect();
         let words = set
             .iter()
-            .map(|(key, value)| format!(" --set {key}={value}"));
+            .map(|(key, value)| format!(" --set {}", quoted(&format!("{key}={value}"))));
         let command = format!("{scene}{}", words.collect::<String>());
         (self.progress)(&format!("{}: {command}", self.case.id));
         let scene = Scene::load(scene, &set)?;

@@ -3,8 +3,15 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-/// Quotes `word` if a shell would change it, as zsh does with the brackets of `gravity=[0,-1.62]`.
-pub(crate) fn quoted(word: &str) -> Cow<'_, str> {
+/// Quotes `word` if a shell would change it, as zsh does with brackets.
+///
+/// ```
+/// use lahar_lab::shell::quoted;
+///
+/// assert_eq!(quoted("dx=0.01"), "dx=0.01");
+/// assert_eq!(quoted("gravity=[0,-1.62]"), "'gravity=[0,-1.62]'");
+/// ```
+pub fn quoted(word: &str) -> Cow<'_, str> {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./:=,+%@".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
         Cow::Borrowed(word)
@@ -13,8 +20,8 @@ pub(crate) fn quoted(word: &str) -> Cow<'_, str> {
     }
 }
 
-/// Quotes a path if a shell would change it.
-pub(crate) fn quoted_path(path: &Path) -> String {
+/// Quotes `path` if a shell would change it.
+pub fn quoted_path(path: &Path) -> String {
     quoted(&path.to_string_lossy()).into_owned()
 }
 
