@@ -16,7 +16,7 @@ pub(super) static SECTION: Section = Section {
     keys: &[MATERIAL, ELASTIC],
 };
 
-/// Soft solids.
+/// Presets of soft solids.
 pub(super) const PRESETS: &[Preset] = &[Preset {
     name: "jelly",
     keys: "model = \"corotated\"\ndensity = 1010.0\nyoungs_modulus = 4.3e3\npoisson_ratio = 0.45\ncolor = \"#ed553b\"",

@@ -186,7 +186,7 @@ pub(super) static SECTION: Section = Section {
     ],
 };
 
-/// Liquids.
+/// Presets of liquids.
 pub(super) const PRESETS: &[Preset] = &[
     Preset {
         name: "water",

@@ -17,13 +17,13 @@ use lahar::{Material, Model};
 pub(crate) struct SceneModel {
     /// Its name, the word of the key `model`.
     pub(crate) name: &'static str,
-    /// Its keys.
+    /// The keys of the model.
     pub(crate) section: &'static Section,
     /// Named sets of its keys.
     pub(crate) presets: &'static [Preset],
-    /// Its look.
+    /// The look of its materials.
     look: Look,
-    /// Its reader.
+    /// The reader of its keys.
     read: ReadModel,
 }
 
@@ -35,11 +35,11 @@ type ReadModel = fn(&Reader<'_>, usize) -> Result<(Model, Option<Stiffness>), Sc
 pub enum Look {
     /// Grains that exert no stress.
     Dust,
-    /// A liquid.
+    /// A liquid with a free surface.
     Liquid,
     /// A solid that keeps its shape.
     Solid,
-    /// White grains.
+    /// Grains of white snow.
     Snow,
 }
 
@@ -92,7 +92,7 @@ pub(crate) struct Preset {
     pub(crate) name: &'static str,
     /// The keys, in TOML.
     pub(crate) keys: &'static str,
-    /// One sentence.
+    /// A sentence that describes the material.
     pub(crate) about: &'static str,
     /// The source of the numbers.
     pub(crate) source: &'static str,

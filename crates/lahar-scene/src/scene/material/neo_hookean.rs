@@ -27,7 +27,7 @@ pub(super) static SECTION: Section = Section {
     ],
 };
 
-/// Tough solids.
+/// Presets of tough solids.
 pub(super) const PRESETS: &[Preset] = &[Preset {
     name: "rubber",
     keys: "model = \"neo_hookean\"\ndensity = 930.0\nyoungs_modulus = 2.0e6\npoisson_ratio = 0.49\ncolor = \"#3b3f46\"",

@@ -69,7 +69,7 @@ pub(super) static SECTION: Section = Section {
     ],
 };
 
-/// Snow.
+/// Presets of snow.
 pub(super) const PRESETS: &[Preset] = &[Preset {
     name: "snow",
     keys: "model = \"snow\"\ndensity = 400.0\nyoungs_modulus = 1.4e5\npoisson_ratio = 0.2\ncritical_compression = 2.5e-2\ncritical_stretch = 7.5e-3\nhardening = 10.0\ncolor = \"#eeeef0\"",
