@@ -21,21 +21,20 @@ fn singles<const D: usize>(batch: &ParticleBatch<D>) -> Vec<ParticleBatch<D>> {
     batch.position.iter().map(one).collect()
 }
 
-/// A ball of material `material` in the upper middle of the box of a brawl of `cells` cells.
-fn falling_ball<const D: usize>(material: usize, cells: usize, seed: u64) -> ParticleBatch<D> {
+/// A small ball that falls, with its center at `x` and `y` as parts of the box of a brawl of `cells` cells.
+fn falling_ball<const D: usize>(
+    material: usize,
+    cells: usize,
+    seed: u64,
+    [x, y]: [f64; 2],
+) -> ParticleBatch<D> {
     let size = cells as f64 / 32.0;
     let mut center = [0.5 * size; D];
-    center[1] = 0.8 * size;
+    (center[0], center[1]) = (x * size, y * size);
     let mut velocity = [0.1; D];
     velocity[1] = -1.0;
-    ball(
-        material,
-        center,
-        0.1 * size,
-        1.0 / 32.0,
-        velocity,
-        &mut Random(seed),
-    )
+    let (radius, dx) = (0.05 * size, 1.0 / 32.0);
+    ball(material, center, radius, dx, velocity, &mut Random(seed))
 }
 
 /// Adds `batches` one after the other, runs on, and returns all bits and the checkpoint at the end.
@@ -80,10 +79,11 @@ fn adding_under_way<T: Instance<D>, const D: usize>(cells: usize) {
         assert!(drift[0] > 0.0, "the last substep has sorted");
         simulation
     };
+    // Beside water and jelly that are there, and elsewhere.
     let new = [
-        falling_ball(0, cells, 3),
-        falling_ball(1, cells, 4),
-        falling_ball(0, cells, 5),
+        falling_ball(0, cells, 3, [0.86, 0.55]),
+        falling_ball(1, cells, 4, [0.545, 0.9]),
+        falling_ball(0, cells, 5, [0.9, 0.9]),
     ];
     let whole = bits_after(running(), &new);
     let parts: Vec<_> = new.iter().flat_map(singles).collect();
@@ -102,12 +102,12 @@ fn adding_under_way_in_any_parts_has_the_same_bits() {
 fn a_run_that_has_grown_goes_on_from_a_checkpoint() {
     let (setup, batches) = brawl::<2>(32);
     let mut simulation = fresh::<f32, 2>(&setup, &batches);
-    let mut lighter = falling_ball::<2>(0, 32, 6);
+    let mut lighter = falling_ball::<2>(0, 32, 6, [0.9, 0.9]);
     lighter.mass = (0..lighter.position.len())
         .map(|i| 1e-3 * (1.0 + i as f64))
         .collect();
     lighter.body = 17;
-    let mut squeezed = falling_ball::<2>(2, 32, 7);
+    let mut squeezed = falling_ball::<2>(2, 32, 7, [0.9, 0.9]);
     squeezed.deformation = Deformation::Jacobian(vec![0.99; squeezed.position.len()]);
     for batch in [lighter, squeezed] {
         simulation
@@ -144,7 +144,7 @@ fn a_bad_batch_adds_nothing() {
     let (setup, batches) = brawl::<2>(32);
     let mut simulation = fresh::<f32, 2>(&setup, &batches);
     let before = simulation.checkpoint();
-    let good = falling_ball::<2>(0, 32, 8);
+    let good = falling_ball::<2>(0, 32, 8, [0.9, 0.9]);
     let mut no_material = good.clone();
     no_material.material = 99;
     let mut not_a_number = good.clone();
@@ -163,7 +163,7 @@ fn a_batch_without_its_dimension_is_the_same() {
         affine: vec![[[0.1, 0.2], [0.3, 0.4]]; 2],
         deformation: Deformation::Gradient(vec![[[1.01, 0.02], [0.0, 0.98]]; 2]),
         position: vec![[0.5, 0.7], [0.52, 0.7]],
-        ..falling_ball::<2>(1, 32, 9)
+        ..falling_ball::<2>(1, 32, 9, [0.9, 0.9])
     };
     let pad = |x: &[f64; 2]| [x[0], x[1], 7.0];
     let pad_rows = |m: &[[f64; 2]; 2]| [pad(&m[0]), pad(&m[1]), [8.0; 3]];
