@@ -22,7 +22,7 @@ use crate::math::{Matrix, Real};
 /// use lahar::math::{Matrix, Vector};
 ///
 /// let law = LinearElastic::new(1e4, 0.25); // λ = μ = 4 kPa
-/// let strain = DisplacementGradient { h: Matrix::from_diagonal(Vector([1e-3, 0.0, 0.0])) };
+/// let strain = DisplacementGradient { h: Matrix::from_diagonal(Vector([1e-3_f64, 0.0, 0.0])) };
 /// let stress = law.kirchhoff_stress(strain, Matrix::scaled_identity(0.0));
 /// assert!((stress[(1, 1)] - 4.0).abs() < 1e-12); // λ e
 /// ```
