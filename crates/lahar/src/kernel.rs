@@ -23,7 +23,7 @@ pub trait BSpline: Copy + Send + Sync + 'static {
     const OFFSET: f64;
     /// The node, counted from the base, that moments are taken about: the nearest in the middle, so
     /// that their rounding is least.
-    const CENTRE: usize;
+    const CENTER: usize;
     /// D⁻¹ dx² of equation (3): Σ w r rᵀ = dx²/`INVERSE_INERTIA` I. Linear: none that holds
     /// anywhere, so infinite.
     const INVERSE_INERTIA: f64;
@@ -50,7 +50,7 @@ pub struct Cubic;
 impl BSpline for Linear {
     const NODES: usize = 2;
     const OFFSET: f64 = 0.0;
-    const CENTRE: usize = 0;
+    const CENTER: usize = 0;
     const INVERSE_INERTIA: f64 = f64::INFINITY;
 
     #[inline(always)]
@@ -69,7 +69,7 @@ impl BSpline for Linear {
 impl BSpline for Quadratic {
     const NODES: usize = 3;
     const OFFSET: f64 = 0.5;
-    const CENTRE: usize = 1;
+    const CENTER: usize = 1;
     const INVERSE_INERTIA: f64 = 4.0;
 
     #[inline(always)]
@@ -94,7 +94,7 @@ impl BSpline for Quadratic {
 impl BSpline for Cubic {
     const NODES: usize = 4;
     const OFFSET: f64 = 1.0;
-    const CENTRE: usize = 1;
+    const CENTER: usize = 1;
     const INVERSE_INERTIA: f64 = 3.0;
 
     #[inline(always)]

@@ -82,9 +82,9 @@ mod dispatch;
 pub mod equations {}
 pub mod error;
 mod float_mode;
-pub mod forces;
+mod force;
 pub mod geometry;
-mod grid;
+pub mod grid;
 mod instance;
 pub mod kernel;
 pub mod material;
@@ -99,19 +99,18 @@ pub mod simulation;
 mod state;
 mod step;
 mod transfer;
+mod volume;
 
-pub use boundary::{
-    BoundaryImpulse, Collider, Contact, Cushion, Domain, Keyframe, Motion, Sides, WallStyle,
-};
+pub use boundary::BoundaryImpulse;
 pub use error::{DtLimit, Failure, SetupError};
-pub use forces::{AccelerationField, Force, Pull};
 pub use geometry::{Bounds, Primitive, Shape};
 pub use instance::Instance;
 pub use material::{Material, Model};
 pub use particles::{Data, Field, Snapshot};
 pub use setup::{
-    Command, Deformation, ForceForm, Gauge, Isa, Kernel, ParticleBatch, Plate, Pointer,
-    PointerAction, Probe, ProbeSample, ProbeSamples, Setup, StartingValues, TimeStep, Transfer,
+    AccelerationField, Collider, Command, Contact, Cushion, Deformation, Domain, Force, ForceForm,
+    Gauge, Isa, Kernel, Keyframe, Motion, ParticleBatch, Plate, Pointer, PointerAction, Probe,
+    ProbeSample, ProbeSamples, Pull, Setup, Sides, StartingValues, TimeStep, Transfer, WallStyle,
 };
 pub use simulate::{Advance, Backend, Memory, Simulate, frame};
 pub use simulation::Simulation;

@@ -276,11 +276,11 @@ impl<T: Instance<D>, const D: usize> Simulate for Simulation<T, D> {
     }
 
     fn memory(&self) -> Memory {
-        let blocks = self.workspace.grid.block_count();
+        let blocks = self.workspace.grid.blocks().len();
         Memory {
             blocks,
             nodes: blocks * block_edge(D).pow(D as u32),
-            grid_bytes: self.workspace.grid.bytes(),
+            grid_bytes: self.workspace.grid_bytes(),
             particle_bytes: self.state.bytes() + self.workspace.sorter.bytes(),
             retry_bytes: self.retry_point.as_ref().map_or(0, RetryPoint::bytes),
         }

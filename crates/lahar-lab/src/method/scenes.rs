@@ -1,6 +1,6 @@
 //! Setups and bodies that the checks of the method run.
 
-use lahar::boundary::{Contact, Domain, Sides, WallStyle};
+use lahar::{Contact, Domain, Sides, WallStyle};
 use lahar::material::{
     Corotated, Dust, Eos, Fluid, HardeningFrom, Material, Model, NeoHookean, Snow, lame,
 };

@@ -1,6 +1,6 @@
 //! The checks K1 to K8 on every engine, with every kernel, transfer scheme, form of the force and model, against limits.
 
-use lahar::boundary::{Contact, Domain, Sides, WallStyle};
+use lahar::{Contact, Domain, Sides, WallStyle};
 use lahar::kernel::{BSpline, Cubic, Linear, Quadratic};
 use lahar::{ForceForm, Kernel, Model, Setup, Transfer};
 use lahar_lab::method::conservation::{affine_change, free_fall, masses, momentum_change};

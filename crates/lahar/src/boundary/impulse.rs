@@ -1,36 +1,35 @@
-//! What boundaries have taken from the material: force and torque, summed over time.
+//! Impulses on boundaries: force and torque of the material, summed over time.
 
 use crate::math::Vector;
 
-/// What one boundary has taken from the material since the start: the impulse of the force on it.
-/// Vectors have three components; in 2D the third of an impulse is zero, and of an angular impulse it
-/// is the only one that is not.
+/// The impulse on one boundary since the start: ∫ F dt, with F the force of the material on it. Vectors have three
+/// components. In 2D the third component of an impulse is zero, and only the third of an angular impulse is not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundaryImpulse {
-    /// A side of the domain by its name in scenes ("left", "right", "bottom", "top", "back", "front"), or
-    /// a collider by its own.
+    /// Name of the side of the domain, as in scenes ("left", "right", "bottom", "top", "back", "front"), or of the
+    /// collider.
     pub name: String,
-    /// ∫ F dt, with F the force of the material on it \[N s; N s/m in 2D\].
+    /// ∫ F dt \[N s; N s/m in 2D\].
     pub impulse: [f64; 3],
-    /// ∫ x × F dt \[N m s; N s in 2D\]: about the coordinates' origin for a side, about where its centre
-    /// is at the time for a collider.
+    /// ∫ x × F dt \[N m s; N s in 2D\], about the origin of coordinates for a side, and about the present place of its
+    /// center for a collider.
     pub angular_impulse: [f64; 3],
 }
 
 /// Names of the sides, by axis.
 pub(crate) const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], ["back", "front"]];
 
-/// An impulse and where it acts.
+/// An impulse of the material on a boundary, and its moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Taken<const D: usize> {
+pub(crate) struct Impulse<const D: usize> {
     /// \[kg m/s\]
     pub(crate) impulse: Vector<f64, D>,
     /// About the point that lengths are counted from; per unit of length.
     pub(crate) angular: [f64; 3],
 }
 
-impl<const D: usize> Taken<D> {
-    pub(crate) const NOTHING: Self = Self {
+impl<const D: usize> Impulse<D> {
+    pub(crate) const ZERO: Self = Self {
         impulse: Vector([0.0; D]),
         angular: [0.0; 3],
     };
@@ -47,7 +46,7 @@ impl<const D: usize> Taken<D> {
         }
     }
 
-    /// Adds what was taken, with lengths counted in units of `unit` from `origin`.
+    /// Adds `other`, whose lengths are counted in units of `unit` from `origin`.
     pub(crate) fn add_scaled(&mut self, other: &Self, unit: f64, origin: [f64; D]) {
         for axis in 0..3 {
             self.angular[axis] += unit * other.angular[axis];

@@ -1,6 +1,6 @@
 //! Which tiles cover which blocks.
 
-use super::tile::{Piece, Reach, axis_pieces};
+use super::tiles::{Piece, Reach, axis_pieces};
 
 /// A part of a block that a tile covers: node `l` of the block (on each axis, `low ≤ l < high`) is
 /// node `l + shift` of the tile.
@@ -14,6 +14,17 @@ pub(super) struct Link<const D: usize> {
 }
 
 impl<const D: usize> Link<D> {
+    /// Links `pieces` of block number `block` to tile number `tile`.
+    pub(super) fn new(block: usize, tile: usize, pieces: [Piece; D]) -> Self {
+        Self {
+            block: block as u32,
+            tile: tile as u32,
+            shift: pieces.map(|piece| piece.shift),
+            low: pieces.map(|piece| piece.low),
+            high: pieces.map(|piece| piece.high),
+        }
+    }
+
     /// Its nodes within `reach`: `low ≤ node < high` in the block, if there are any.
     #[inline(always)]
     pub(super) fn within(&self, reach: Reach<D>) -> Option<([usize; D], [usize; D])> {
@@ -183,13 +194,7 @@ impl<const D: usize> Links<D> {
                 }
                 let block = place(blocks, covered, before + 1, last[number]);
                 (before, last[number]) = (block, block);
-                self.by_tile.push(Link {
-                    block: block as u32,
-                    tile: tile as u32,
-                    shift: piece.map(|piece| piece.shift),
-                    low: piece.map(|piece| piece.low),
-                    high: piece.map(|piece| piece.high),
-                });
+                self.by_tile.push(Link::new(block, tile, piece));
                 let mut axes = (0..D).rev();
                 let Some(axis) = axes.find(|&axis| choice[axis] + 1 < pieces[axis].len()) else {
                     break;

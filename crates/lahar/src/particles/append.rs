@@ -4,8 +4,8 @@ use super::group::{Group, Layout};
 use super::lattice::Lattice;
 use super::run::Run;
 use super::sort::in_range;
-use crate::boundary::collider::Moving;
-use crate::boundary::surface::put_out;
+use crate::boundary::colliders::placed::Moving;
+use crate::boundary::colliders::projection::project_out;
 use crate::error::SetupError;
 use crate::math::{Lanes, Vector};
 use crate::setup::{Deformation, ParticleBatch};
@@ -105,7 +105,7 @@ impl<T: Lanes, const D: usize> Group<T, D> {
         let block = place.map(|(block, _)| block);
         let mut x = Vector(place.map(|(_, x)| x));
         // The batch's velocity is kept: only the position leaves the colliders.
-        put_out(
+        project_out(
             placement.colliders,
             placement.bounds,
             placement.lattice.middle(block),

@@ -1,12 +1,12 @@
 //! The one check of setups and batches, for the engine and the oracle alike.
 
+use super::force::check_forces;
 use super::{
-    Deformation, ForceForm, Gauge, Kernel, ParticleBatch, Setup, StartingValues, TimeStep, Transfer,
+    Collider, Deformation, ForceForm, Gauge, Kernel, ParticleBatch, Setup, StartingValues,
+    TimeStep, Transfer,
 };
-use crate::boundary::Collider;
 use crate::boundary::walls::Walls;
 use crate::error::SetupError;
-use crate::forces;
 use crate::kernel::STENCIL;
 use crate::material::{DEFORMATION_GRADIENT, JACOBIAN, Variable};
 use crate::particles::Lattice;
@@ -47,7 +47,7 @@ impl<const D: usize> CheckedSetup<D> {
     pub(crate) fn new(setup: Setup<D>) -> Result<Self, SetupError> {
         check_numbers(&setup)?;
         check_method(&setup)?;
-        forces::check(&setup.forces)?;
+        check_forces(&setup.forces)?;
         for collider in &setup.colliders {
             collider.check()?;
         }
@@ -72,8 +72,11 @@ impl<const D: usize> CheckedSetup<D> {
             offset: setup.kernel.offset(),
             period: walls.period,
         };
-        let in_cells =
-            |collider: &Collider<D>| collider.in_units(lattice.dx, lattice.origin).rooted(&walls);
+        let in_cells = |collider: &Collider<D>| {
+            collider
+                .in_units(lattice.dx, lattice.origin)
+                .extended(&walls)
+        };
         Ok(Self {
             colliders: setup.colliders.iter().map(in_cells).collect(),
             walls,

@@ -5,20 +5,24 @@
 //! ```
 
 pub(crate) mod check;
+mod collider;
 mod command;
+mod domain;
+mod force;
 mod isa;
 mod particle_batch;
 mod probe;
 mod scheme;
 
+pub use collider::{Collider, Keyframe, Motion};
 pub use command::{Command, Pointer, PointerAction};
+pub use domain::{Contact, Cushion, Domain, Sides, WallStyle};
+pub use force::{AccelerationField, Force, Pull};
 pub use isa::Isa;
 pub use particle_batch::{Deformation, ParticleBatch, StartingValues};
 pub use probe::{Gauge, Plate, Probe, ProbeSample, ProbeSamples};
 pub(crate) use scheme::Scheme;
 
-use crate::boundary::{Collider, Cushion, Domain};
-use crate::forces::Force;
 use crate::geometry::Bounds;
 use crate::kernel::{self, BSpline};
 use crate::material::Material;

@@ -1,7 +1,7 @@
 //! Accelerations of particles by forces other than gravity and stress.
 
 use super::State;
-use crate::forces;
+use crate::force;
 use crate::instance::Instance;
 use crate::math::Vector;
 use crate::particles::{Group, Run};
@@ -68,7 +68,7 @@ impl<T: Instance<D>, const D: usize> State<T, D> {
                 }
                 known = count;
             }
-            forces::accelerations(
+            force::accelerations(
                 &scene.setup.forces,
                 acting_on == ActingOn::Particles,
                 time,

@@ -28,7 +28,7 @@ pub(crate) fn add<T: Instance<D>, const D: usize>(
     workspace.place_colliders(scene, state, 0.0);
     let placement = Placement {
         lattice: &scene.lattice,
-        bounds: &scene.walls.hold,
+        bounds: &scene.walls.bounds,
         colliders: &workspace.colliders,
     };
     let mut new: Vec<_> = (state.groups.iter())
@@ -81,7 +81,7 @@ fn measure_volumes<T: Instance<D>, const D: usize>(
     if ids.is_empty() {
         return;
     }
-    workspace.rest_volume_to_grid(state);
+    let volumes_on_nodes = workspace.rest_volumes(state);
     let is_measured = |id: &u32| ids.iter().any(|ids| ids.contains(id));
     for group in &mut state.groups {
         if !group.id.iter().any(is_measured) {
@@ -89,7 +89,8 @@ fn measure_volumes<T: Instance<D>, const D: usize>(
         }
         let mut expansion = vec![T::default(); group.len()];
         let (scheme, isa) = (workspace.scheme, workspace.isa);
-        T::expansion(group, &workspace.grid, scheme, isa, &mut expansion);
+        let nodes = (&workspace.grid, &volumes_on_nodes);
+        T::expansion(group, nodes, scheme, isa, &mut expansion);
         let volume = |row: usize| {
             let given = group.volume0.get(row);
             if is_measured(&group.id[row]) {
@@ -102,4 +103,5 @@ fn measure_volumes<T: Instance<D>, const D: usize>(
         group.volume0 = PerParticle::Uniform(T::default());
         group.volume0.extend(0, volumes.into_iter());
     }
+    workspace.give_node_storage(volumes_on_nodes);
 }

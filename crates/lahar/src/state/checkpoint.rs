@@ -10,7 +10,7 @@
 use super::State;
 use super::probes::Readings;
 pub use crate::array::{Array, Values};
-use crate::boundary::impulse::Taken;
+use crate::boundary::impulse::Impulse;
 use crate::instance::Instance;
 use crate::math::Lanes;
 use crate::math::Vector;
@@ -19,7 +19,7 @@ use crate::particles::{
 };
 use crate::setup::check::CheckedSetup;
 use crate::setup::{Pointer, PointerAction, Probe, ProbeSample};
-use crate::transfer::gather::MOST_CELLS;
+use crate::transfer::g2p::LARGEST_MOVE;
 use core::fmt;
 use std::sync::Arc;
 
@@ -180,7 +180,7 @@ impl<T: Instance<D>, const D: usize> State<T, D> {
         out.put("next_id", &[], Values::U32(vec![*next_id]));
         out.put("escaped.count", &[], Values::U64(vec![escaped.count]));
         out.number("escaped.mass", escaped.mass);
-        let flat = |taken: &Taken<D>| taken.impulse.0.into_iter().chain(taken.angular);
+        let flat = |total: &Impulse<D>| total.impulse.0.into_iter().chain(total.angular);
         out.put(
             "taken",
             &[boundary_totals.len(), D + 3],
@@ -217,7 +217,7 @@ impl<T: Instance<D>, const D: usize> State<T, D> {
         };
         let next_id = arrays.id("next_id")?;
         // Beyond the limit rows are sorted before anything else is done, and no substep moves them further.
-        let drift = arrays.number("drift", 0.0..=DRIFT_LIMIT + MOST_CELLS)?;
+        let drift = arrays.number("drift", 0.0..=DRIFT_LIMIT + LARGEST_MOVE)?;
         let mut state = Self {
             drift,
             time_since_correction: arrays.number("uncorrected", 0.0..=f64::MAX)?,
@@ -273,12 +273,12 @@ impl<T: Instance<D>, const D: usize> State<T, D> {
         Ok(())
     }
 
-    fn read_totals(&self, arrays: &mut In) -> Result<Vec<Taken<D>>, CheckpointError> {
+    fn read_totals(&self, arrays: &mut In) -> Result<Vec<Impulse<D>>, CheckpointError> {
         let (shape, values) = arrays.f64s("taken")?;
         if shape != [self.boundary_totals.len(), D + 3] {
             return wrong("taken", "is not of this scene's walls and colliders");
         }
-        let one = |row: &[f64]| Taken {
+        let one = |row: &[f64]| Impulse {
             impulse: Vector(core::array::from_fn(|axis| row[axis])),
             angular: core::array::from_fn(|axis| row[D + axis]),
         };
@@ -295,7 +295,7 @@ fn check_places<T: Lanes, const D: usize>(
     for run in &group.runs {
         let middle = scene.lattice.middle(run.block);
         for (axis, middle) in middle.into_iter().enumerate() {
-            let (low, high) = scene.walls.hold[axis];
+            let (low, high) = scene.walls.bounds[axis];
             let low = low.map_or(f64::NEG_INFINITY, |low| low - middle - ROUNDING);
             let high = high.map_or(f64::INFINITY, |high| high - middle + ROUNDING);
             let places = &group.columns[axis][run.rows()];

@@ -23,7 +23,7 @@ pub(crate) mod time_step;
 pub(crate) mod workspace;
 
 use crate::boundary::BoundaryImpulse;
-use crate::boundary::impulse::Taken;
+use crate::boundary::impulse::Impulse;
 use crate::material::Law;
 use crate::math::{Lanes, Vector};
 use crate::particles::{Escaped, Group, Layout};
@@ -45,7 +45,7 @@ pub(crate) struct State<T: Lanes, const D: usize> {
     pub(crate) time_since_correction: f64,
     /// Impulses that each boundary has taken since the start, by the number of the domain's side and then by collider;
     /// lengths in meters.
-    pub(crate) boundary_totals: Vec<Taken<D>>,
+    pub(crate) boundary_totals: Vec<Impulse<D>>,
     /// Readings of each probe that nobody has asked for yet.
     pub(crate) readings: Vec<Readings>,
     /// Particles that have left since the start.
@@ -118,7 +118,7 @@ impl<T: Lanes, const D: usize> State<T, D> {
                 .collect(),
             drift: 0.0,
             time_since_correction: 0.0,
-            boundary_totals: vec![Taken::NOTHING; 2 * D + setup.colliders.len()],
+            boundary_totals: vec![Impulse::ZERO; 2 * D + setup.colliders.len()],
             readings: vec![Readings::default(); setup.probes.len()],
             escaped: Escaped::default(),
             control: StepControl::new(setup.time_step, setup.dx, Vector(setup.gravity).norm()),
@@ -192,10 +192,10 @@ impl<T: Lanes, const D: usize> State<T, D> {
 mod tests {
     use super::workspace::Workspace;
     use super::{State, add};
-    use crate::boundary::{Contact, Domain, Sides, WallStyle};
     use crate::instance::Kernels;
     use crate::material::preset;
     use crate::setup::check::CheckedSetup;
+    use crate::setup::{Contact, Domain, Sides, WallStyle};
     use crate::setup::{ParticleBatch, Setup};
     use crate::step::{StageTimes, substep};
 

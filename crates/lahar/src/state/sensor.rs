@@ -1,6 +1,6 @@
 //! Pressure gauges in walls: they measure the impulse that the wall takes, as a sensor does.
 
-use crate::grid::Grid;
+use crate::boundary::walls::faces::WallFaces;
 use crate::math::Lanes;
 use crate::setup::check::CheckedSetup;
 use crate::setup::{Gauge, Plate};
@@ -13,17 +13,17 @@ const IN_WALL: f64 = 1e-3;
 pub(crate) fn press<T: Lanes, const D: usize>(
     scene: &CheckedSetup<D>,
     state: &mut State<T, D>,
-    grid: &Grid<T, D>,
+    faces: &WallFaces<D>,
 ) {
     for index in 0..scene.setup.probes.len() {
         let Some(sensor) = Sensor::of(scene, index) else {
             continue;
         };
-        let impulse: f64 = grid
-            .pressed(sensor.wall)
-            .map(|(node, pressed)| {
+        let impulse: f64 = faces
+            .normal_impulses(sensor.wall)
+            .map(|(node, impulse)| {
                 let distance = sensor.distance_along_wall(scene, node.map(f64::from));
-                sensor.face.covers(distance) * pressed
+                sensor.face.covers(distance) * impulse
             })
             .sum();
         let area = sensor.cells(scene) * scene.lattice.dx.powi(D as i32 - 1);

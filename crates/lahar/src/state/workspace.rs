@@ -1,30 +1,43 @@
 //! The workspace: buffers of the substep, which can be dropped and made again from the state.
 
 use super::State;
-use crate::boundary::collider::Moving;
-use crate::boundary::impulse::Taken;
+use crate::boundary::colliders::placed::Moving;
+use crate::boundary::constraint::Boundaries;
+use crate::boundary::impulse::Impulse;
 use crate::error::SetupError;
-use crate::grid::Grid;
+use crate::force::nodes::NodeImpulses;
+use crate::grid::operations::NodeVector;
+use crate::grid::{BLOCK_NODES, Grid, Momentum, NodeField, QUAD, Velocity, Volume};
 use crate::instance::Instance;
 use crate::material::IsaToken;
 use crate::particles::{DRIFT_LIMIT, Sorter};
 use crate::setup::Scheme;
 use crate::setup::check::CheckedSetup;
-use crate::transfer::scatter::What;
 
-/// The buffers and constants of the substep. Nothing in it outlives a substep but the layout of the grid,
+/// What a substep works with besides the state. Nothing in it outlives a substep but the layout of the grid,
 /// which follows from the blocks that the particles are in.
 pub(crate) struct Workspace<T, const D: usize> {
     pub(crate) scheme: Scheme,
     pub(crate) isa: IsaToken,
     pub(crate) grid: Grid<T, D>,
+    /// From the sums over tiles to the forces.
+    pub(crate) momentum: NodeField<Momentum, T>,
+    /// From the forces to G2P.
+    pub(crate) velocity: NodeField<Velocity, T>,
+    /// The storage of node fields, while none of them is in use.
+    spare: Vec<T>,
+    /// Δt a of the forces that differ from node to node \[m/s\].
+    pub(crate) node_impulses: NodeImpulses<T, D>,
+    /// A buffer of the volume correction: the excess of volume at each node.
+    pub(crate) excess: NodeVector<T, 1>,
+    pub(crate) boundaries: Boundaries<D>,
     pub(crate) sorter: Sorter<T, D>,
     /// Sorts of all particles since the workspace was made.
     pub(crate) sorts: u64,
     /// The colliders in the present substep.
     pub(crate) colliders: Vec<Moving<D>>,
-    /// Impulses that colliders take by projecting particles out, by run.
-    pub(crate) impulses_by_run: Vec<Taken<D>>,
+    /// By run and collider, the impulse on the collider by particles that are projected out.
+    pub(crate) impulses_by_run: Vec<Impulse<D>>,
 }
 
 impl<T: Instance<D>, const D: usize> Workspace<T, D> {
@@ -55,6 +68,12 @@ impl<T: Instance<D>, const D: usize> Workspace<T, D> {
             scheme,
             isa: IsaToken(level),
             grid: Grid::new(scheme),
+            momentum: NodeField::default(),
+            velocity: NodeField::default(),
+            spare: Vec::new(),
+            node_impulses: NodeVector::default(),
+            excess: NodeVector::default(),
+            boundaries: Boundaries::new(scheme),
             sorter: Sorter::default(),
             sorts: 0,
             colliders: colliders
@@ -66,7 +85,8 @@ impl<T: Instance<D>, const D: usize> Workspace<T, D> {
 
     /// Makes the grid's blocks and tiles where the particles of `state` are, and tells the runs their tiles.
     pub(crate) fn rebuild(&mut self, scene: &CheckedSetup<D>, state: &mut State<T, D>) {
-        self.grid.rebuild(&mut state.groups, &scene.walls);
+        self.grid.rebuild(&mut state.groups, scene.walls.period);
+        self.boundaries.rebuild(self.grid.blocks(), &scene.walls);
     }
 
     /// Sorts the particles by block if one of them may have left its block's tile.
@@ -91,7 +111,7 @@ impl<T: Instance<D>, const D: usize> Workspace<T, D> {
     ) {
         let time = state.control.time();
         for (moving, collider) in self.colliders.iter_mut().zip(&scene.colliders) {
-            moving.put(collider, time, dt);
+            moving.move_to(collider, time, dt);
         }
     }
 
@@ -101,6 +121,12 @@ impl<T: Instance<D>, const D: usize> Workspace<T, D> {
             scheme: self.scheme,
             isa: self.isa,
             grid: self.grid.clone(),
+            momentum: NodeField::default(),
+            velocity: NodeField::default(),
+            spare: Vec::new(),
+            node_impulses: NodeVector::default(),
+            excess: NodeVector::default(),
+            boundaries: self.boundaries.clone(),
             sorter: Sorter::default(),
             sorts: 0,
             colliders: Vec::new(),
@@ -108,27 +134,47 @@ impl<T: Instance<D>, const D: usize> Workspace<T, D> {
         }
     }
 
+    /// Takes the storage of node fields, to make one of. The fields of the last substep are gone afterwards.
+    pub(crate) fn take_node_storage(&mut self) -> Vec<T> {
+        let momentum = core::mem::take(&mut self.momentum).into_storage();
+        let velocity = core::mem::take(&mut self.velocity).into_storage();
+        let spare = core::mem::take(&mut self.spare);
+        // At most one of them is in use.
+        [momentum, velocity, spare]
+            .into_iter()
+            .max_by_key(Vec::capacity)
+            .unwrap_or_default()
+    }
+
+    /// Gives the storage of a node field back.
+    pub(crate) fn give_node_storage<Q>(&mut self, field: NodeField<Q, T>) {
+        self.spare = field.into_storage();
+    }
+
+    /// Bytes of memory of the grid and of the fields on its nodes.
+    pub(crate) fn grid_bytes(&self) -> usize {
+        let node = size_of::<T>() * QUAD * self.scheme.layers();
+        self.grid.bytes() + node * BLOCK_NODES * self.grid.blocks().len()
+    }
+
     /// Sums the particles' rest volumes on the nodes.
-    pub(crate) fn rest_volume_to_grid(&mut self, state: &State<T, D>) {
-        let what = What::Volume { corrected: false };
+    pub(crate) fn rest_volumes(&mut self, state: &State<T, D>) -> NodeField<Volume, T> {
+        let (scheme, isa) = (self.scheme, self.isa);
         for group in &state.groups {
-            T::scatter(
-                group,
-                self.scheme,
-                self.isa,
-                0.0,
-                what,
-                self.grid.tiles_mut(),
-            );
+            T::add_volumes(group, scheme, isa, false, self.grid.tiles_mut());
         }
-        T::sum_tiles(&mut self.grid, self.isa);
+        let storage = self.take_node_storage();
+        T::sum_volumes(&self.grid, isa, storage)
     }
 
     /// Measures the space that is filled \[m³; m² in 2D\]: Σ over nodes of min(1, rest volume at the node / dxᴰ)
     /// dxᴰ. Particles must be inside of their blocks' tiles.
     pub(crate) fn filled_volume(&mut self, state: &State<T, D>) -> f64 {
-        self.rest_volume_to_grid(state);
+        let volumes = self.rest_volumes(state);
         let cell = self.scheme.dx.powi(D as i32);
-        self.grid.over_nodes(|volume| volume.min(cell))
+        let filled = volumes.quads().map(|quad| quad[0].to_f64().min(cell));
+        let total = filled.fold(0.0, |total, volume| total + volume);
+        self.give_node_storage(volumes);
+        total
     }
 }

@@ -1,4 +1,4 @@
-//! Adds what boundaries took in the substep to their totals since the start, and to the gauges in walls.
+//! Adds the impulses on boundaries in the substep to their totals since the start, and to the gauges in walls.
 
 use super::Substep;
 use crate::error::Failure;
@@ -14,17 +14,17 @@ pub(super) fn run<T: Instance<D>, const D: usize>(
         workspace,
         ..
     } = substep;
-    let (dx, grid) = (scene.lattice.dx, &workspace.grid);
+    let (dx, boundaries) = (scene.lattice.dx, &workspace.boundaries);
     let (sides, of_colliders) = state.boundary_totals.split_at_mut(2 * D);
-    for (total, taken) in sides.iter_mut().zip(&grid.taken) {
-        total.add_scaled(taken, dx, scene.lattice.origin);
+    for (total, impulse) in sides.iter_mut().zip(&boundaries.impulses) {
+        total.add_scaled(impulse, dx, scene.lattice.origin);
     }
-    let each = of_colliders.iter_mut().zip(&grid.taken[2 * D..]);
-    for ((total, taken), collider) in each.zip(&workspace.colliders) {
+    let each = of_colliders.iter_mut().zip(&boundaries.impulses[2 * D..]);
+    for ((total, impulse), collider) in each.zip(&workspace.colliders) {
         // Angular impulses are about the collider's center at the time.
         let from_center = (-collider.start.center() * dx).0;
-        total.add_scaled(taken, dx, from_center);
+        total.add_scaled(impulse, dx, from_center);
     }
-    sensor::press(scene, state, grid);
+    sensor::press(scene, state, &boundaries.faces);
     Ok(())
 }

@@ -2,13 +2,13 @@
 //! are projected out.
 
 use super::Substep;
-use crate::boundary::impulse::Taken;
-use crate::boundary::pointer::Push;
+use crate::boundary::impulse::Impulse;
+use crate::boundary::pointer::ParticlePointer;
 use crate::error::Failure;
 use crate::instance::Instance;
 use crate::particles::{Group, in_range};
 use crate::setup::to_3d;
-use crate::transfer::gather::{Around, MOST_CELLS};
+use crate::transfer::g2p::{LARGEST_MOVE, Surroundings};
 
 /// The particles that failed.
 #[derive(Clone, Copy, Debug)]
@@ -32,21 +32,24 @@ pub(super) fn run<T: Instance<D>, const D: usize>(
     let lattice = &scene.lattice;
     let (mut speed_squared, mut moved, mut wave_speed_squared) = (0.0_f64, 0.0_f64, 0.0_f64);
     let mut failed = None;
-    let push = Push::of(state.pointer, lattice.origin, lattice.dx, *dt);
+    let pointer = ParticlePointer::of(state.pointer, lattice.origin, lattice.dx, *dt);
     let (scheme, isa, colliders) = (workspace.scheme, workspace.isa, &workspace.colliders);
     for (material, group) in state.groups.iter_mut().enumerate() {
-        let around = Around {
+        let surroundings = Surroundings {
             walls: &scene.walls,
-            push: push.as_ref(),
+            pointer: pointer.as_ref(),
             colliders,
         };
-        let taken = &mut workspace.impulses_by_run;
-        let found = T::gather(group, &workspace.grid, around, scheme, isa, *dt, taken);
+        let by_run = &mut workspace.impulses_by_run;
+        let nodes = (&workspace.grid, &workspace.velocity);
+        let method = (scheme, lattice);
+        let found = T::gather(group, nodes, surroundings, method, isa, *dt, by_run);
         // Run after run: the order of sums does not depend on threads.
-        for (number, total) in workspace.grid.taken[2 * D..].iter_mut().enumerate() {
-            let mut of_group = Taken::NOTHING;
-            for taken in taken.iter().skip(number).step_by(colliders.len()) {
-                of_group.add_scaled(taken, 1.0, [0.0; D]);
+        let totals = workspace.boundaries.impulses[2 * D..].iter_mut();
+        for (number, total) in totals.enumerate() {
+            let mut of_group = Impulse::ZERO;
+            for impulse in by_run.iter().skip(number).step_by(colliders.len()) {
+                of_group.add_scaled(impulse, 1.0, [0.0; D]);
             }
             total.add_scaled(&of_group, 1.0, [0.0; D]);
         }
@@ -87,7 +90,7 @@ fn failure<T: Instance<D>, const D: usize>(substep: &Substep<'_, T, D>, failed: 
     let problem = if bad.is_some() {
         "a particle's motion or strain is no longer a finite number".to_owned()
     } else if in_range(run.block) {
-        format!("a particle has jumped by more than {MOST_CELLS} cells")
+        format!("a particle has jumped by more than {LARGEST_MOVE} cells")
     } else {
         "a particle is too far from the origin to be placed".to_owned()
     };

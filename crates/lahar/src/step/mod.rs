@@ -5,10 +5,12 @@
 //!                                                                            totals, time step, probes
 //! ```
 
+mod boundaries;
 mod boundary_totals;
 mod colliders;
 mod g2p;
-mod grid_update;
+mod node_forces;
+mod node_sums;
 mod p2g;
 mod particle_forces;
 mod probes;
@@ -67,8 +69,10 @@ impl<T: Instance<D>, const D: usize> Substep<'_, T, D> {
         Stage::new("particle forces", Phase::Other, particle_forces::run),      // (11)
         Stage::new("colliders", Phase::Other, colliders::run),
         Stage::new("particles to grid", Phase::Scatter, p2g::run), // (1)–(4)
-        Stage::new("grid update", Phase::Grid, grid_update::run),
-        Stage::new("grid to particles", Phase::Gather, g2p::run), // (5)–(8)
+        Stage::new("node sums", Phase::Grid, node_sums::run),      // (1), (2)
+        Stage::new("node forces", Phase::Grid, node_forces::run),  // (9), (10)
+        Stage::new("boundaries", Phase::Grid, boundaries::run),    // (13)–(15)
+        Stage::new("grid to particles", Phase::Gather, g2p::run),  // (5)–(8)
         Stage::new("boundary totals", Phase::Other, boundary_totals::run),
         Stage::new("time step", Phase::Other, time_step::run),
         Stage::new("probes", Phase::Other, probes::run),

@@ -3,7 +3,6 @@
 use super::Substep;
 use crate::error::Failure;
 use crate::instance::Instance;
-use crate::transfer::scatter::What;
 
 pub(super) fn run<T: Instance<D>, const D: usize>(
     substep: &mut Substep<'_, T, D>,
@@ -17,7 +16,7 @@ pub(super) fn run<T: Instance<D>, const D: usize>(
     let (scheme, isa) = (workspace.scheme, workspace.isa);
     for group in &state.groups {
         let tiles = workspace.grid.tiles_mut();
-        T::scatter(group, scheme, isa, *dt, What::Momentum, tiles);
+        T::add_momentum(group, scheme, isa, *dt, tiles);
     }
     Ok(())
 }

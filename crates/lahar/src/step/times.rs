@@ -1,7 +1,7 @@
 //! Seconds by stage and by phase of the substep.
 
 /// Number of stages of the substep.
-pub(crate) const STAGE_COUNT: usize = 11;
+pub(crate) const STAGE_COUNT: usize = 13;
 
 /// Seconds by stage, since a clock was given.
 #[derive(Clone, Debug, Default)]

@@ -6,7 +6,6 @@ use crate::instance::Instance;
 use crate::material::VolumeCorrection;
 use crate::particles::{Group, Layout};
 use crate::setup::CORRECTION_INTERVAL;
-use crate::transfer::scatter::What;
 
 pub(super) fn run<T: Instance<D>, const D: usize>(
     substep: &mut Substep<'_, T, D>,
@@ -33,18 +32,20 @@ pub(super) fn run<T: Instance<D>, const D: usize>(
         return Ok(());
     }
     state.time_since_correction = 0.0;
-    let (scheme, isa, grid) = (workspace.scheme, workspace.isa, &mut workspace.grid);
+    let (scheme, isa) = (workspace.scheme, workspace.isa);
     for index in 0..state.groups.len() {
         let Some((column, rates)) = corrected(&state.groups[index]) else {
             continue;
         };
         for (other, group) in state.groups.iter().enumerate() {
-            let what = What::Volume {
-                corrected: other == index,
-            };
-            T::scatter(group, scheme, isa, 0.0, what, grid.tiles_mut());
+            let tiles = workspace.grid.tiles_mut();
+            T::add_volumes(group, scheme, isa, other == index, tiles);
         }
-        T::measure_filling(grid, isa, &scene.walls, dx);
+        let storage = workspace.take_node_storage();
+        let (grid, excess) = (&workspace.grid, &mut workspace.excess);
+        let volumes = T::sum_volumes(grid, isa, storage);
+        let walls = (&scene.walls, &workspace.boundaries.faces);
+        let filling = T::measure_filling(grid, isa, volumes, walls, dx, excess);
         let shares = VolumeCorrection {
             smoothing: rates.smoothing * time,
             correction: rates.correction * time,
@@ -52,8 +53,10 @@ pub(super) fn run<T: Instance<D>, const D: usize>(
         let group = &mut state.groups[index];
         let column = Layout::strain(D) + column;
         let mut e = core::mem::take(&mut group.columns[column]);
-        T::correct_volume(group, grid, scheme, isa, shares, &mut e);
+        let nodes = (&workspace.grid, &filling);
+        T::correct_volume(group, nodes, scheme, isa, shares, &mut e);
         group.columns[column] = e;
+        workspace.give_node_storage(filling);
     }
     Ok(())
 }

@@ -15,15 +15,16 @@ pub(super) fn run<T: Instance<D>, const D: usize>(
     if !state.groups.iter().any(gathers) {
         return Ok(());
     }
-    workspace.rest_volume_to_grid(state);
+    let volumes = workspace.rest_volumes(state);
     for group in &mut state.groups {
         if let Some(column) = group.law.gathered_column() {
             let column = Layout::strain(D) + column;
             let mut out = core::mem::take(&mut group.columns[column]);
             let (scheme, isa) = (workspace.scheme, workspace.isa);
-            T::expansion(group, &workspace.grid, scheme, isa, &mut out);
+            T::expansion(group, (&workspace.grid, &volumes), scheme, isa, &mut out);
             group.columns[column] = out;
         }
     }
+    workspace.give_node_storage(volumes);
     Ok(())
 }

@@ -1,32 +1,31 @@
-//! The two loops between particles and nodes.
+//! The two transfers between particles and nodes.
 //!
-//! Each runs over the blocks of a group; a block's particles are worked on in chunks, in stages
-//! through a buffer that stays in the first-level cache, so that laws and transfers are compiled
-//! apart:
+//! Each walks over the blocks of a group. The particles of a block are worked on in chunks, step by step through buffers
+//! that stay in the first-level cache, so that laws and transfers are compiled apart:
 //!
 //! ```text
-//! scatter   law: strain → stress   │ weights, Q_p: lanes of particles │ rows of nodes += particle
-//! gather    rows of nodes → particle │ v, C, x: lanes of particles │ law: strain advances
+//! P2G   law: strain → stress     │ weights, Q_p: lanes of particles │ rows of nodes += particle
+//! G2P   rows of nodes → particle │ v, C, x: lanes of particles      │ law: strain advances
 //! ```
 //!
-//! "Lanes" means that a register holds the same number of 16 (f64: 8) particles; "rows" that it holds
-//! four nodes of one particle. Rows restate the sums (2), (5) and (6): [`rows`] says how.
+//! In "lanes" a register holds the same number of 16 (f64: 8) particles; in "rows" it holds four nodes of one particle.
+//! Rows restate the sums (2), (5) and (6), as [`rows`] explains.
 
-pub(crate) mod gather;
+pub(crate) mod g2p;
+pub(crate) mod p2g;
 pub(crate) mod rows;
-pub(crate) mod scatter;
-pub(crate) mod volume;
+pub(crate) mod stencil;
+pub(crate) mod walk;
 
-use crate::grid::{Grid, tile_edge, tile_plane};
+use crate::grid::{Grid, NodeField, tile_edge, tile_layer};
 use crate::math::Lanes;
 use crate::particles::Run;
-use crate::particles::{CHUNK, Rows};
 use fearless_simd::Simd;
 
-/// Numbers of the largest tile: cubic in 3D, two planes.
-const LARGEST_TILE: usize = 2 * tile_plane::<3>(tile_edge::<3>(4));
+/// Numbers of the largest tile: cubic in 3D, two layers.
+const LARGEST_TILE: usize = 2 * tile_layer::<3>(tile_edge::<3>(4));
 
-/// A copy of a tile's nodes, as far as they are read; it begins with a line of the cache.
+/// A copy of the nodes that a tile's particles read, aligned to a line of the cache.
 #[repr(align(64))]
 pub(crate) struct TileCopy<T>(pub(crate) [T; LARGEST_TILE]);
 
@@ -35,69 +34,33 @@ impl<T: Lanes> TileCopy<T> {
         Self([T::default(); LARGEST_TILE])
     }
 
-    /// Loads what the particles of the first of `runs` read, and asks memory for what those of the second will.
+    /// Copies the nodes of `field` that the particles of the first of `runs` read, and prefetches those of the second.
     #[inline(always)]
-    pub(crate) fn load<S: Simd, const D: usize>(
+    pub(crate) fn load<Q, S: Simd, const D: usize>(
         &mut self,
         simd: S,
         grid: &Grid<T, D>,
+        field: &NodeField<Q, T>,
         runs: &[Run<D>],
     ) {
         let tile = runs[0].tile as usize;
-        grid.copy_tile(simd, tile, grid.reach_of_rows(tile), &mut self.0);
+        let reach = grid.reach_of_rows(tile);
+        grid.copy_tile(simd, field, tile, reach, &mut self.0);
         if let Some(next) = runs.get(1) {
             let tile = next.tile as usize;
-            grid.ask_for_nodes(tile, grid.reach_of_rows(tile));
+            grid.prefetch_nodes_of(field, tile, grid.reach_of_rows(tile));
         }
     }
 }
 
-/// Buffers for one chunk of particles. A quad is four numbers of one particle; quads of a chunk
-/// follow one another.
-#[repr(align(64))]
-pub(crate) struct Stage<T> {
-    /// τ, or Δt ∂v/∂x: `[j·D + i][p]`. Of volumes, J − 1 in the first.
-    pub(crate) matrix: [Rows<T>; 9],
-    /// For each axis, the four weights of each particle.
-    pub(crate) weights: [[T; 4 * CHUNK]; 3],
-    /// For each axis, the four weight gradients of each particle (classic only).
-    pub(crate) gradients: [[T; 4 * CHUNK]; 3],
-    /// Scatter: P₀ and dx Q by column, of momentum. Gather: Σ w v and Σ w v n by column.
-    pub(crate) momentum: [[T; 4 * CHUNK]; 4],
-    /// Scatter: the same of the impulse of stress, where that is apart. Gather: Σ w Δv, and
-    /// Σ v ∇w by column.
-    pub(crate) impulse: [[T; 4 * CHUNK]; 4],
-    /// Where each particle's first row begins in the tile, in nodes.
-    pub(crate) base: [i32; CHUNK],
-    /// The lowest places of a block's particles so far, lane by lane, on each axis.
-    pub(crate) lowest: [[T; 16]; 3],
-    /// The highest.
-    pub(crate) highest: [[T; 16]; 3],
-}
-
-impl<T: Lanes> Stage<T> {
-    pub(crate) fn new() -> Self {
-        let zero = T::default();
-        Self {
-            matrix: [[zero; CHUNK]; 9],
-            weights: [[zero; 4 * CHUNK]; 3],
-            gradients: [[zero; 4 * CHUNK]; 3],
-            momentum: [[zero; 4 * CHUNK]; 4],
-            impulse: [[zero; 4 * CHUNK]; 4],
-            base: [0; CHUNK],
-            lowest: [[zero; 16]; 3],
-            highest: [[zero; 16]; 3],
-        }
-    }
-}
-
-/// Runs an expression with `$K` bound to the kernel's type and `$SPLIT`, `$CLASSIC` to constants, on
-/// `$simd`. The combination that most scenes use is compiled for every instruction set; the others,
-/// kept for comparison, for the portable one.
+/// Runs an expression with `$K` bound to the type of the scheme's kernel, and with constants for its choices: `$SPLIT` if
+/// the impulse of stress has a layer of its own, `$CLASSIC` for the force of the original MPM. `$simd` is the token of the
+/// instruction set. The combinations that most scenes use are compiled for every instruction set; the others, which serve
+/// comparisons, for the portable one.
 macro_rules! with_scheme {
     ($scheme:expr, $isa:expr, $simd:ident, $K:ident, $SPLIT:ident, $CLASSIC:ident => $body:expr) => {{
         use $crate::setup::{ForceForm, Kernel};
-        let split = $scheme.planes() == 2;
+        let split = $scheme.layers() == 2;
         macro_rules! instance {
             ($kernel:ty, $s:literal, $c:literal, $on:ident $level:tt) => {{
                 type $K = $kernel;

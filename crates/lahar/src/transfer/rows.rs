@@ -1,25 +1,25 @@
 //! The sums over nodes, by rows: the only place where (2), (5) and (6) are restated.
 //!
-//! The lever arm r is linear in the node's index n = (i, j, k) from the base node, so what a
-//! particle gives to a node is w_i w_j w_k (P₀ + i A_x + j A_y + k A_z), where
+//! The lever arm r is linear in the node's index n = (i, j, k) from the base node. So a particle brings
+//! w_i w_j w_k (P₀ + i A_x + j A_y + k A_z) to a node, where
 //!
 //! ```text
 //! A = dx Q by columns,   P₀ = m v − A s,   s = the particle's place from the base node, in cells
 //! ```
 //!
-//! and mass rides along as the fourth number of P₀. The four nodes of a row, k = 0 .. 3, lie side by
-//! side in the tile: one register in f32 with AVX-512. With w_k multiplied in first, a row is w_j times
-//! one register, and is added to its nodes one by one or by pairs. Likewise G2P sums rows by j, then by
-//! i, and the row itself once at the end, keeping Σ, Σ·i, Σ·j and Σ·k, with i, j, k counted from the stencil's middle node. In 2D a row is (i) and lies along j.
+//! and mass is the fourth number of P₀. The four nodes of a row, k = 0 .. 3, lie side by side in the tile: one register in
+//! f32 with AVX-512. With w_k multiplied in first, a row is w_j times one register, and is added to its nodes one by one
+//! or by pairs. Likewise G2P sums rows by j, then by i, and the row itself once at the end, for Σ, Σ·i, Σ·j and Σ·k, with
+//! i, j, k counted from the stencil's middle node. In 2D a row is (i) and lies along j.
 //!
-//! `reference` does the same sums node by node; tests hold the two together.
+//! The module `reference` does the same sums node by node; tests compare the two.
 
-use super::Stage;
+use super::stencil::{MomentumQuads, Quads, Stencils, VelocitySums};
 use crate::kernel::BSpline;
 use crate::math::{Lanes, Row};
 use fearless_simd::Simd;
 
-/// The node's index along a row, for each of its numbers.
+/// Returns the node's index along a row, for each of its numbers.
 #[inline(always)]
 fn along<S: Simd, T: Lanes>(simd: S) -> T::Row<S> {
     let index = [
@@ -31,7 +31,8 @@ fn along<S: Simd, T: Lanes>(simd: S) -> T::Row<S> {
     T::Row::spread(simd, &index)
 }
 
-/// (1), (2) for particle `p` of the chunk: adds what it gives to each node of its stencil.
+/// (1), (2) for particle `p` of the chunk: adds its mass and momentum, and the impulse of stress, to the nodes of its
+/// stencil.
 #[inline(always)]
 pub(super) fn scatter<
     S: Simd,
@@ -42,40 +43,24 @@ pub(super) fn scatter<
     const CLASSIC: bool,
 >(
     simd: S,
-    stage: &Stage<T>,
+    stencils: &Stencils<T>,
+    quads: &MomentumQuads<T>,
     p: usize,
-    tile_edge: usize,
-    tile_plane: usize,
+    (tile_edge, tile_layer): (usize, usize),
     tile: &mut [T],
 ) {
-    let (momentum, impulse) = tile.split_at_mut(tile_plane);
-    scatter_affine::<S, T, D, K>(
-        simd,
-        &stage.momentum,
-        &stage.weights,
-        stage.base[p],
-        p,
-        tile_edge,
-        momentum,
-    );
+    let (momentum, impulse) = tile.split_at_mut(tile_layer);
+    scatter_affine::<S, T, D, K>(simd, &quads.momentum, stencils, p, tile_edge, momentum);
     let target = if SPLIT { impulse } else { momentum };
     if CLASSIC {
-        scatter_classic::<S, T, D, K>(simd, stage, p, tile_edge, target);
+        scatter_classic::<S, T, D, K>(simd, stencils, &quads.stress, p, tile_edge, target);
     } else if SPLIT {
-        scatter_affine::<S, T, D, K>(
-            simd,
-            &stage.impulse,
-            &stage.weights,
-            stage.base[p],
-            p,
-            tile_edge,
-            target,
-        );
+        scatter_affine::<S, T, D, K>(simd, &quads.stress, stencils, p, tile_edge, target);
     }
 }
 
-/// Adds `weight value` to the stencil's row that begins with `row`. Node by node in 2D, by pairs in 3D, where
-/// what a row costs besides weighs more: measured.
+/// Adds `weight value` to the stencil's row that begins with `row`: node by node in 2D, by pairs in 3D, where the other
+/// costs of a row weigh more (measured).
 #[inline(always)]
 fn add_row<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
@@ -86,17 +71,19 @@ fn add_row<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     value.add_scaled(simd, weight, row, K::NODES, D == 3);
 }
 
+/// Adds w_i w_j w_k (P₀ + i A_x + j A_y + k A_z) of particle `p` to the nodes of its stencil; `affine` are P₀ and the
+/// columns of A.
 #[inline(always)]
 fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
-    affine: &[[T; 4 * super::CHUNK]; 4],
-    weights: &[[T; 4 * super::CHUNK]; 3],
-    base: i32,
+    affine: &[Quads<T>; 4],
+    stencils: &Stencils<T>,
     p: usize,
     tile_edge: usize,
     tile: &mut [T],
 ) {
     let q = 4 * p;
+    let (base, weights) = (stencils.base[p], &stencils.weights);
     let quad = |c: usize| T::Row::<S>::repeat(simd, &affine[c][q..]);
     let w_row = T::Row::<S>::spread(simd, &weights[D - 1][q..]);
     let start = w_row * along::<S, T>(simd).mul_add(quad(D), quad(0));
@@ -126,22 +113,22 @@ fn scatter_affine<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     }
 }
 
-/// Adds the first quad of `stage.momentum` for particle `p` to each node of its stencil, by weight: what has
-/// no affine part.
+/// Adds the quad of particle `p` to each node of its stencil, by weight: a payload without an affine part.
 #[inline(always)]
 pub(super) fn scatter_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
-    stage: &Stage<T>,
+    stencils: &Stencils<T>,
+    quads: &Quads<T>,
     p: usize,
     tile_edge: usize,
     tile: &mut [T],
 ) {
     let q = 4 * p;
-    let base = stage.base[p] as usize;
-    let value = T::Row::<S>::spread(simd, &stage.weights[D - 1][q..])
-        * T::Row::<S>::repeat(simd, &stage.momentum[0][q..]);
+    let base = stencils.base[p] as usize;
+    let value = T::Row::<S>::spread(simd, &stencils.weights[D - 1][q..])
+        * T::Row::<S>::repeat(simd, &quads[q..]);
     for i in 0..K::NODES {
-        let w_i = stage.weights[0][q + i];
+        let w_i = stencils.weights[0][q + i];
         if D == 2 {
             let row = &mut tile[(base + i * tile_edge) * 4..][..16];
             add_row::<S, T, D, K>(simd, row, w_i, value);
@@ -152,25 +139,26 @@ pub(super) fn scatter_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
         let rows = &mut tile[at..at + (K::NODES - 1) * tile_edge * 4 + 16];
         for j in 0..K::NODES {
             let row = &mut rows[j * tile_edge * 4..][..16];
-            add_row::<S, T, D, K>(simd, row, stage.weights[1][q + j], value);
+            add_row::<S, T, D, K>(simd, row, stencils.weights[1][q + j], value);
         }
     }
 }
 
-/// The original force: what the gradients of the weights make of the impulse's columns G, which
-/// `impulse[1..]` holds: Σ over axes of G_a ∂_a w.
+/// The force of the original MPM: adds Σ over axes of G_a ∂_a w, where `stress[1..]` are the columns G of the impulse of
+/// stress.
 #[inline(always)]
 fn scatter_classic<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
-    stage: &Stage<T>,
+    stencils: &Stencils<T>,
+    stress: &[Quads<T>; 4],
     p: usize,
     tile_edge: usize,
     tile: &mut [T],
 ) {
     let q = 4 * p;
-    let base = stage.base[p] as usize;
-    let quad = |a: usize| T::Row::<S>::repeat(simd, &stage.impulse[1 + a][q..]);
-    let (weights, gradients) = (&stage.weights, &stage.gradients);
+    let base = stencils.base[p] as usize;
+    let quad = |a: usize| T::Row::<S>::repeat(simd, &stress[1 + a][q..]);
+    let (weights, gradients) = (&stencils.weights, &stencils.gradients);
     let w_row = T::Row::<S>::spread(simd, &weights[D - 1][q..]);
     let g_row = T::Row::<S>::spread(simd, &gradients[D - 1][q..]);
     let by_x = w_row * quad(0);
@@ -198,7 +186,7 @@ fn scatter_classic<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     }
 }
 
-/// `sum + (index − centre) part`, for the small whole numbers that a stencil has.
+/// Returns `sum + (index − center) part`, for the small whole numbers of a stencil.
 #[inline(always)]
 fn add_moment<S: Simd, T: Lanes, K: BSpline>(
     simd: S,
@@ -206,14 +194,14 @@ fn add_moment<S: Simd, T: Lanes, K: BSpline>(
     index: usize,
     part: T::Row<S>,
 ) -> T::Row<S> {
-    match index as isize - K::CENTRE as isize {
+    match index as isize - K::CENTER as isize {
         0 => sum,
         1 => sum + part,
         arm => T::Row::splat(simd, T::from_f64(arm as f64)).mul_add(part, sum),
     }
 }
 
-/// Σ_j and Σ_j (j − centre) of a plane's rows, weighted; in 2D a plane is a single row.
+/// Returns Σ_j and Σ_j (j − center) of a plane's rows, weighted; in 2D a plane is a single row.
 #[inline(always)]
 fn plane_sums<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
@@ -235,7 +223,7 @@ fn plane_sums<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     (sum, by_j)
 }
 
-/// The rows of plane `i` of a stencil.
+/// Returns the rows of plane `i` of a stencil.
 #[inline(always)]
 fn plane<T, const D: usize, K: BSpline>(
     tile: &[T],
@@ -251,59 +239,59 @@ fn plane<T, const D: usize, K: BSpline>(
     &tile[at * 4..][..rows * tile_edge * 4 + 16]
 }
 
-/// Σ w of the nodes' quads, to `momentum[0]`: what [`gather`] finds there. For particles `p .. p + 4`.
+/// Writes Σ w of the nodes' quads, for particles `p .. p + 4`, to `out`.
 #[inline(always)]
-pub(super) fn gather_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
+pub(crate) fn gather_quad<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
-    stage: &mut Stage<T>,
+    stencils: &Stencils<T>,
     p: usize,
     tile_edge: usize,
     tile: &[T],
+    out: &mut Quads<T>,
 ) {
     let sums = [
-        sum_of_quads::<S, T, D, K>(simd, stage, p, tile_edge, tile),
-        sum_of_quads::<S, T, D, K>(simd, stage, p + 1, tile_edge, tile),
-        sum_of_quads::<S, T, D, K>(simd, stage, p + 2, tile_edge, tile),
-        sum_of_quads::<S, T, D, K>(simd, stage, p + 3, tile_edge, tile),
+        sum_of_quads::<S, T, D, K>(simd, stencils, p, tile_edge, tile),
+        sum_of_quads::<S, T, D, K>(simd, stencils, p + 1, tile_edge, tile),
+        sum_of_quads::<S, T, D, K>(simd, stencils, p + 2, tile_edge, tile),
+        sum_of_quads::<S, T, D, K>(simd, stencils, p + 3, tile_edge, tile),
     ];
-    T::Row::fold_four(sums, &mut stage.momentum[0][4 * p..]);
+    T::Row::fold_four(sums, &mut out[4 * p..]);
 }
 
-/// The sum of [`gather_quad`] for particle `p`, still node by node along the row.
+/// Returns the sum of [`gather_quad`] for particle `p`, not yet folded along the row.
 #[inline(always)]
 fn sum_of_quads<S: Simd, T: Lanes, const D: usize, K: BSpline>(
     simd: S,
-    stage: &Stage<T>,
+    stencils: &Stencils<T>,
     p: usize,
     tile_edge: usize,
     tile: &[T],
 ) -> T::Row<S> {
     let q = 4 * p;
-    let base = stage.base[p] as usize;
-    let w_row = T::Row::<S>::spread(simd, &stage.weights[D - 1][q..]);
+    let base = stencils.base[p] as usize;
+    let w_row = T::Row::<S>::spread(simd, &stencils.weights[D - 1][q..]);
     let mut sum = T::Row::splat(simd, T::default());
     for i in 0..K::NODES {
         let (row, _) = plane_sums::<S, T, D, K>(
             simd,
             plane::<T, D, K>(tile, base, i, tile_edge),
             tile_edge,
-            &stage.weights[1][q..],
+            &stencils.weights[1][q..],
         );
-        sum = sum + T::Row::splat(simd, stage.weights[0][q + i]) * row;
+        sum = sum + T::Row::splat(simd, stencils.weights[0][q + i]) * row;
     }
     sum * w_row
 }
 
-/// What the rows of one particle's stencil add up to, still node by node along the row; as quads in the stage.
+/// The sums of [`VelocitySums`] for one particle, not yet folded along the row.
 struct Sums<R> {
-    /// Σ w v and Σ w v (n_a − centre).
-    momentum: [R; 4],
-    /// Σ w Δv and dx Σ v ∂_a w.
-    impulse: [R; 4],
+    moments: [R; 4],
+    change: R,
+    gradients: [R; 3],
 }
 
-/// (5), (6) for particles `p .. p + 4`: Σ w v to `momentum[0]`, Σ w v (n_a − centre) to `momentum[1 + a]`; if
-/// `SPLIT`, Σ w Δv to `impulse[0]`; if `CLASSIC`, dx Σ v ∂_a w to `impulse[1 + a]`.
+/// (5), (6) for particles `p .. p + 4`: computes their [`VelocitySums`]; the change if `SPLIT`, the gradients if
+/// `CLASSIC`.
 #[inline(always)]
 pub(super) fn gather<
     S: Simd,
@@ -314,66 +302,76 @@ pub(super) fn gather<
     const CLASSIC: bool,
 >(
     simd: S,
-    stage: &mut Stage<T>,
+    stencils: &Stencils<T>,
     p: usize,
-    tile_edge: usize,
-    tile_plane: usize,
+    (tile_edge, tile_layer): (usize, usize),
     tile: &[T],
+    out: &mut VelocitySums<T>,
 ) {
-    let used = usize::from(!SPLIT)..if CLASSIC { 1 + D } else { 1 };
     if !T::Row::<S>::ROOM_FOR_FOUR {
         for p in p..p + 4 {
             let one =
-                sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p, tile_edge, tile_plane, tile);
+                sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stencils, p, tile_edge, tile_layer, tile);
             for m in 0..=D {
-                one.momentum[m].fold(&mut stage.momentum[m][4 * p..]);
+                one.moments[m].fold(&mut out.moments[m][4 * p..]);
             }
-            for m in used.clone() {
-                one.impulse[m].fold(&mut stage.impulse[m][4 * p..]);
+            if SPLIT {
+                one.change.fold(&mut out.change[4 * p..]);
+            }
+            if CLASSIC {
+                for axis in 0..D {
+                    one.gradients[axis].fold(&mut out.gradients[axis][4 * p..]);
+                }
             }
         }
         return;
     }
-    let a = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p, tile_edge, tile_plane, tile);
-    let b = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p + 1, tile_edge, tile_plane, tile);
-    let c = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p + 2, tile_edge, tile_plane, tile);
-    let d = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stage, p + 3, tile_edge, tile_plane, tile);
+    let a = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stencils, p, tile_edge, tile_layer, tile);
+    let b = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stencils, p + 1, tile_edge, tile_layer, tile);
+    let c = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stencils, p + 2, tile_edge, tile_layer, tile);
+    let d = sums::<S, T, D, K, SPLIT, CLASSIC>(simd, stencils, p + 3, tile_edge, tile_layer, tile);
     let q = 4 * p;
     for m in 0..=D {
-        let rows = [a.momentum[m], b.momentum[m], c.momentum[m], d.momentum[m]];
-        T::Row::fold_four(rows, &mut stage.momentum[m][q..]);
+        let rows = [&a, &b, &c, &d].map(|sums| sums.moments[m]);
+        T::Row::fold_four(rows, &mut out.moments[m][q..]);
     }
-    for m in used {
-        let rows = [a.impulse[m], b.impulse[m], c.impulse[m], d.impulse[m]];
-        T::Row::fold_four(rows, &mut stage.impulse[m][q..]);
+    if SPLIT {
+        let rows = [a.change, b.change, c.change, d.change];
+        T::Row::fold_four(rows, &mut out.change[q..]);
+    }
+    if CLASSIC {
+        for axis in 0..D {
+            let rows = [&a, &b, &c, &d].map(|sums| sums.gradients[axis]);
+            T::Row::fold_four(rows, &mut out.gradients[axis][q..]);
+        }
     }
 }
 
-/// The sums of [`gather`] for particle `p`.
+/// Returns the sums of [`gather`] for particle `p`.
 #[inline(always)]
 fn sums<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const CLASSIC: bool>(
     simd: S,
-    stage: &Stage<T>,
+    stencils: &Stencils<T>,
     p: usize,
     tile_edge: usize,
-    tile_plane: usize,
+    tile_layer: usize,
     tile: &[T],
 ) -> Sums<T::Row<S>> {
     let q = 4 * p;
-    let base = stage.base[p] as usize;
+    let base = stencils.base[p] as usize;
     let k = along::<S, T>(simd);
-    let w_row = T::Row::<S>::spread(simd, &stage.weights[D - 1][q..]);
+    let w_row = T::Row::<S>::spread(simd, &stencils.weights[D - 1][q..]);
     let zero = T::Row::splat(simd, T::default());
 
-    let velocity = &tile[..tile_plane];
+    let velocity = &tile[..tile_layer];
     let (mut sum, mut by_i, mut by_j) = (zero, zero, zero);
     for i in 0..K::NODES {
-        let w_i = T::Row::splat(simd, stage.weights[0][q + i]);
+        let w_i = T::Row::splat(simd, stencils.weights[0][q + i]);
         let (row, row_by_j) = plane_sums::<S, T, D, K>(
             simd,
             plane::<T, D, K>(velocity, base, i, tile_edge),
             tile_edge,
-            &stage.weights[1][q..],
+            &stencils.weights[1][q..],
         );
         let part = w_i * row;
         sum = sum + part;
@@ -383,43 +381,43 @@ fn sums<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const 
         }
     }
     let sum = sum * w_row;
-    let mut momentum = [sum, by_i * w_row, zero, zero];
+    let mut moments = [sum, by_i * w_row, zero, zero];
     if D == 3 {
-        momentum[2] = by_j * w_row;
+        moments[2] = by_j * w_row;
     }
-    momentum[D] = sum * (k + T::Row::splat(simd, T::from_f64(-(K::CENTRE as f64))));
+    moments[D] = sum * (k + T::Row::splat(simd, T::from_f64(-(K::CENTER as f64))));
 
-    let mut impulse = [zero; 4];
+    let (mut change, mut gradients) = (zero, [zero; 3]);
     if SPLIT {
-        let change = &tile[tile_plane..];
+        let changes = &tile[tile_layer..];
         let mut sum = zero;
         for i in 0..K::NODES {
-            sum = T::Row::splat(simd, stage.weights[0][q + i]).mul_add(
+            sum = T::Row::splat(simd, stencils.weights[0][q + i]).mul_add(
                 plane_sums::<S, T, D, K>(
                     simd,
-                    plane::<T, D, K>(change, base, i, tile_edge),
+                    plane::<T, D, K>(changes, base, i, tile_edge),
                     tile_edge,
-                    &stage.weights[1][q..],
+                    &stencils.weights[1][q..],
                 )
                 .0,
                 sum,
             );
         }
-        impulse[0] = sum * w_row;
+        change = sum * w_row;
     }
     if CLASSIC {
-        let g_row = T::Row::<S>::spread(simd, &stage.gradients[D - 1][q..]);
+        let g_row = T::Row::<S>::spread(simd, &stencils.gradients[D - 1][q..]);
         let (mut by_x, mut by_y, mut by_row) = (zero, zero, zero);
         for i in 0..K::NODES {
             let (w_i, g_i) = (
-                T::Row::splat(simd, stage.weights[0][q + i]),
-                T::Row::splat(simd, stage.gradients[0][q + i]),
+                T::Row::splat(simd, stencils.weights[0][q + i]),
+                T::Row::splat(simd, stencils.gradients[0][q + i]),
             );
             let weighted = plane_sums::<S, T, D, K>(
                 simd,
                 plane::<T, D, K>(velocity, base, i, tile_edge),
                 tile_edge,
-                &stage.weights[1][q..],
+                &stencils.weights[1][q..],
             )
             .0;
             by_x = g_i.mul_add(weighted, by_x);
@@ -430,18 +428,22 @@ fn sums<S: Simd, T: Lanes, const D: usize, K: BSpline, const SPLIT: bool, const 
                         simd,
                         plane::<T, D, K>(velocity, base, i, tile_edge),
                         tile_edge,
-                        &stage.gradients[1][q..],
+                        &stencils.gradients[1][q..],
                     )
                     .0,
                     by_y,
                 );
             }
         }
-        impulse[1] = by_x * w_row;
+        gradients[0] = by_x * w_row;
         if D == 3 {
-            impulse[2] = by_y * w_row;
+            gradients[1] = by_y * w_row;
         }
-        impulse[D] = by_row * g_row;
+        gradients[D - 1] = by_row * g_row;
     }
-    Sums { momentum, impulse }
+    Sums {
+        moments,
+        change,
+        gradients,
+    }
 }

@@ -1,9 +1,9 @@
-//! Tiles: what is fixed about them, and how much of each its particles reach.
+//! Tiles: their size, the blocks that they cover, and the part that particles reach.
 
 use super::QUAD;
 use crate::particles::block_edge;
 
-/// Nodes behind a tile, so that the row of four at its very end stays inside.
+/// Nodes behind a tile, so that the row of four at its end stays inside.
 const TILE_PADDING: usize = 4;
 
 /// Nodes along a tile: the block, one cell of drift on either side, and the kernel's reach.
@@ -11,8 +11,8 @@ pub(crate) const fn tile_edge<const D: usize>(kernel_nodes: usize) -> usize {
     block_edge(D) + 2 + (kernel_nodes - 1)
 }
 
-/// Numbers of one plane of a tile with that edge.
-pub(crate) const fn tile_plane<const D: usize>(tile_edge: usize) -> usize {
+/// Numbers of one layer of a tile with this edge.
+pub(crate) const fn tile_layer<const D: usize>(tile_edge: usize) -> usize {
     (tile_edge.pow(D as u32) + TILE_PADDING) * QUAD
 }
 
@@ -55,8 +55,8 @@ pub(super) fn axis_pieces<const D: usize>(
     }
 }
 
-/// The nodes of a tile that its particles reach: `low ≤ node < high` on each axis. The others hold
-/// zeros: particles drift by a whole cell only just before they are sorted again.
+/// The nodes of a tile that its particles reach: `low ≤ node < high` on each axis. The others are zero, since particles
+/// drift by a whole cell only just before they are sorted again.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reach<const D: usize> {
     pub(crate) low: [u8; D],
@@ -73,7 +73,7 @@ impl<const D: usize> Reach<D> {
         high: [u8::MAX; D],
     };
 
-    /// Both.
+    /// The smallest reach that contains this one and `other`.
     pub(crate) fn and(self, other: Self) -> Self {
         Self {
             low: core::array::from_fn(|axis| self.low[axis].min(other.low[axis])),
@@ -82,25 +82,36 @@ impl<const D: usize> Reach<D> {
     }
 }
 
-/// Tiles side by side, to scatter to.
+/// Tiles side by side, which particles are added to.
 pub(crate) struct Tiles<'a, T, const D: usize> {
-    pub(crate) numbers: &'a mut [T],
-    pub(crate) reach: &'a mut [Reach<D>],
+    pub(super) numbers: &'a mut [T],
+    pub(super) reach: &'a mut [Reach<D>],
+    /// The number of the first of them.
+    pub(super) first: usize,
     /// Numbers of a tile.
-    pub(crate) len: usize,
+    pub(super) len: usize,
 }
 
 impl<T, const D: usize> Tiles<'_, T, D> {
-    /// The first `tiles`, and the others.
-    pub(crate) fn split_at(&mut self, tiles: usize) -> (Tiles<'_, T, D>, Tiles<'_, T, D>) {
-        let len = self.len;
-        let (low, high) = self.numbers.split_at_mut(tiles * len);
-        let (low_reach, high_reach) = self.reach.split_at_mut(tiles);
-        let of = |numbers, reach| Tiles {
+    /// Divides them before the tile with number `tile`.
+    pub(crate) fn split_before(self, tile: usize) -> (Self, Self) {
+        let (len, before) = (self.len, tile - self.first);
+        let (low, high) = self.numbers.split_at_mut(before * len);
+        let (low_reach, high_reach) = self.reach.split_at_mut(before);
+        let of = |numbers, reach, first| Self {
             numbers,
             reach,
+            first,
             len,
         };
-        (of(low, low_reach), of(high, high_reach))
+        (of(low, low_reach, self.first), of(high, high_reach, tile))
+    }
+
+    /// The numbers of the tile with number `tile`, and the nodes that its particles reach.
+    #[inline(always)]
+    pub(crate) fn get_mut(&mut self, tile: usize) -> (&mut [T], &mut Reach<D>) {
+        let index = tile - self.first;
+        let numbers = &mut self.numbers[index * self.len..][..self.len];
+        (numbers, &mut self.reach[index])
     }
 }

@@ -103,7 +103,7 @@ impl<const D: usize> Force<D> {
 
     /// Adds the acceleration at `positions` to `out`; `scratch` is as long. Drag, which depends on
     /// the velocity, adds nothing here.
-    fn add(
+    pub(crate) fn add(
         &self,
         time: f64,
         positions: &[[f64; D]],
@@ -169,50 +169,8 @@ impl<const D: usize> Force<D> {
     }
 }
 
-/// Σ of the accelerations at `positions` \[m/s²\], of the forces that act on particles or of the
-/// others, into `out`; `scratch` is as long.
-pub(crate) fn accelerations<const D: usize>(
-    forces: &[Force<D>],
-    on_particles: bool,
-    time: f64,
-    positions: &[[f64; D]],
-    starts: &[[f64; D]],
-    scratch: &mut [[f64; D]],
-    out: &mut [[f64; D]],
-) {
-    out.fill([0.0; D]);
-    for force in forces {
-        if force.acts_on_particles() == on_particles {
-            let starts = if on_particles { starts } else { &[] };
-            force.add(time, positions, starts, scratch, out);
-        }
-    }
-}
-
-/// Whether any force is an acceleration of nodes.
-pub(crate) fn any_on_nodes<const D: usize>(forces: &[Force<D>]) -> bool {
-    let acts =
-        |force: &Force<D>| !force.acts_on_particles() && !matches!(force, Force::Drag { .. });
-    forces.iter().any(acts)
-}
-
-/// All drags as one: with K = Σ k and u = Σ k u / K, what is left of v − u after `dt`, and u.
-/// `None`: nothing drags.
-pub(crate) fn drag<const D: usize>(forces: &[Force<D>], dt: f64) -> Option<(f64, [f64; D])> {
-    let (mut rates, mut weighted) = (0.0, [0.0; D]);
-    for force in forces {
-        if let Force::Drag { rate, velocity } = force {
-            rates += rate;
-            for i in 0..D {
-                weighted[i] += rate * velocity[i];
-            }
-        }
-    }
-    (rates > 0.0).then(|| (libm::exp(-rates * dt), weighted.map(|w| w / rates)))
-}
-
 /// Checks the forces of a setup.
-pub(crate) fn check<const D: usize>(forces: &[Force<D>]) -> Result<(), SetupError> {
+pub(super) fn check_forces<const D: usize>(forces: &[Force<D>]) -> Result<(), SetupError> {
     match forces.iter().position(|force| !force.is_finite()) {
         Some(index) => Err(SetupError {
             key: format!("forces.{index}"),

@@ -1,20 +1,21 @@
-//! The domain's walls as the nodes see them.
+//! The walls of the domain in node indices, and the intervals that particles are kept in.
 
-use super::impulse::{SIDES, Taken};
-use super::rooted::Side;
-use super::{Contact, Cushion, Domain, Sides, WallStyle};
+pub(crate) mod faces;
+pub(crate) mod fold;
+mod nodes;
+
+use crate::boundary::impulse::SIDES;
 use crate::error::SetupError;
 use crate::geometry::Bounds;
-use crate::math::{Scalar, Vector};
-use crate::setup::Setup;
+use crate::setup::{Contact, Cushion, Domain, Setup, Sides, WallStyle};
 
-/// How far, in cells, a side may be from a whole number of them.
+/// How far the length of a side may be from a whole number of cells \[cells\].
 const WHOLE_CELLS_TOLERANCE: f64 = 1e-6;
 
-/// One end of an axis in node indices.
+/// One end of an axis with a wall of [`WallStyle::Nodes`].
 #[derive(Clone, Copy, Debug)]
 struct End {
-    /// The outermost node that is not inside: at and beyond it the contact acts.
+    /// The contact acts on nodes with this index and beyond it.
     node: i64,
     contact: Contact,
 }
@@ -31,42 +32,51 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    /// The number of the domain's side that it is.
+    /// Returns the number of its side of the domain.
     pub(crate) fn side(&self) -> usize {
         side(self.axis, self.inward < 0)
     }
 }
 
-/// The number of a side of the domain: axis after axis, low before high.
+/// Returns the number of a side of the domain: axis after axis, low before high.
 const fn side(axis: usize, high: bool) -> usize {
     2 * axis + high as usize
 }
 
-/// The walls of a domain in node indices; nothing at all when unbounded.
+/// A side of the domain, in cells from node 0.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side {
+    pub(super) axis: usize,
+    /// Its place on `axis`.
+    pub(super) at: f64,
+    /// +1 at the high end of the axis, −1 at the low end.
+    pub(super) out: f64,
+}
+
+/// The walls of a domain; there are none where it is unbounded.
 #[derive(Clone, Debug)]
 pub(crate) struct Walls<const D: usize> {
-    /// Walls on their plane, axis after axis. They act in this order.
+    /// Walls on their plane, axis after axis: the order in which they act.
     pub(crate) planes: Vec<Plane>,
     /// Walls of [`WallStyle::Nodes`].
     low: [Option<End>; D],
     high: [Option<End>; D],
-    /// Cells on a periodic axis.
+    /// Cells along a periodic axis.
     pub(crate) period: [Option<i64>; D],
-    /// Where particles may be, in cells from the origin: (lowest, highest) if a wall on its plane or
-    /// a clamp holds them there.
-    pub(crate) hold: [(Option<f64>, Option<f64>); D],
-    /// Where particles are slowed down to stay, in cells from the origin.
+    /// The intervals that walls on their planes and clamps keep particles in: (lowest, highest), in cells from node 0.
+    pub(crate) bounds: [(Option<f64>, Option<f64>); D],
+    /// The box that particles are slowed down to stay in.
     pub(crate) cushion: Option<NodeCushion<D>>,
-    /// Beyond which particles are removed, in cells from the origin.
+    /// The places of open sides, in cells from node 0. Particles beyond them are removed.
     pub(crate) open: [(Option<f64>, Option<f64>); D],
 }
 
-/// [`Cushion`] in cells.
+/// A [`Cushion`], with lengths in cells from node 0.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NodeCushion<const D: usize> {
     pub(crate) low: [f64; D],
     pub(crate) high: [f64; D],
-    /// dx / time: the speed that crosses a cell in it \[m/s\].
+    /// The speed that crosses a cell in the cushion's time: dx / time \[m/s\].
     pub(crate) speed: f64,
 }
 
@@ -77,28 +87,28 @@ impl<const D: usize> Walls<D> {
             low: [None; D],
             high: [None; D],
             period: [None; D],
-            hold: [(None, None); D],
+            bounds: [(None, None); D],
             cushion: None,
             open: [(None, None); D],
         }
     }
 
-    /// Whether particles can leave through a side.
+    /// Returns true if particles can leave through a side.
     pub(crate) fn has_open(&self) -> bool {
         let is_open = |side: &(Option<f64>, Option<f64>)| side.0.is_some() || side.1.is_some();
         self.open.iter().any(is_open)
     }
 
-    /// The walls of a scene, and what keeps particles in.
+    /// Makes the walls of a scene, its clamp and its cushion.
     ///
     /// # Errors
-    /// Names the key that makes no walls.
+    /// Names the key of the domain that is wrong.
     pub(crate) fn of(setup: &Setup<D>) -> Result<Self, SetupError> {
         let (mut walls, origin) = match &setup.domain {
             Some(domain) => (Self::new(domain, setup.dx)?, domain.min),
             None => (Self::unbounded(), [0.0; D]),
         };
-        walls.keep(
+        walls.add_boxes(
             setup.clamp.as_ref(),
             setup.cushion.as_ref(),
             origin,
@@ -107,7 +117,7 @@ impl<const D: usize> Walls<D> {
         Ok(walls)
     }
 
-    /// The walls of `domain` on nodes `dx` apart.
+    /// Makes the walls of `domain` on nodes `dx` apart.
     ///
     /// # Errors
     /// If a side is empty, or is not a whole number of cells.
@@ -155,7 +165,7 @@ impl<const D: usize> Walls<D> {
                             inward: 1,
                             contact: low,
                         });
-                        walls.hold[axis].0 = Some(0.0);
+                        walls.bounds[axis].0 = Some(0.0);
                     } else {
                         walls.low[axis] = Some(End {
                             node: low_node,
@@ -171,7 +181,7 @@ impl<const D: usize> Walls<D> {
                             inward: -1,
                             contact: high,
                         });
-                        walls.hold[axis].1 = Some(cells as f64);
+                        walls.bounds[axis].1 = Some(cells as f64);
                     } else {
                         walls.high[axis] = Some(End {
                             node: high_node,
@@ -184,11 +194,11 @@ impl<const D: usize> Walls<D> {
         Ok(walls)
     }
 
-    /// Adds what keeps particles in boxes of their own.
+    /// Adds the boxes of a clamp and of a cushion, which keep particles in.
     ///
     /// # Errors
     /// If a box is empty, or the cushion's time is not positive.
-    fn keep(
+    fn add_boxes(
         &mut self,
         clamp: Option<&Bounds<D>>,
         cushion: Option<&Cushion<D>>,
@@ -202,9 +212,9 @@ impl<const D: usize> Walls<D> {
             check_corners("domain.clamp", corners)?;
             let (low, high) = (cells(corners.min), cells(corners.max));
             for axis in 0..D {
-                let hold = &mut self.hold[axis];
-                hold.0 = Some(hold.0.map_or(low[axis], |x| x.max(low[axis])));
-                hold.1 = Some(hold.1.map_or(high[axis], |x| x.min(high[axis])));
+                let bounds = &mut self.bounds[axis];
+                bounds.0 = Some(bounds.0.map_or(low[axis], |x| x.max(low[axis])));
+                bounds.1 = Some(bounds.1.map_or(high[axis], |x| x.min(high[axis])));
             }
         }
         if let Some(cushion) = cushion {
@@ -224,8 +234,8 @@ impl<const D: usize> Walls<D> {
         Ok(())
     }
 
-    /// The sides of the domain where material ends.
-    pub(crate) fn ends(&self) -> impl Iterator<Item = Side> {
+    /// Returns the sides of the domain at which material ends.
+    pub(super) fn ends(&self) -> impl Iterator<Item = Side> {
         let planes = self.planes.iter().map(|plane| Side {
             axis: plane.axis,
             at: plane.node as f64,
@@ -242,7 +252,7 @@ impl<const D: usize> Walls<D> {
         planes.chain((0..D).flat_map(of_axis))
     }
 
-    /// Names of the domain's sides with walls, and their numbers.
+    /// Returns names and numbers of the sides with walls.
     pub(crate) fn sides(&self) -> impl Iterator<Item = (&'static str, usize)> {
         let is_wall = |side: usize| {
             let (axis, high) = (side / 2, side % 2 == 1);
@@ -258,53 +268,19 @@ impl<const D: usize> Walls<D> {
             .map(|side| (SIDES[side / 2][side % 2], side))
     }
 
-    /// Whether any node of `first .. first + edge` on each axis is in a wall of
-    /// [`WallStyle::Nodes`].
-    pub(crate) fn touch(&self, first: [i64; D], edge: usize) -> bool {
-        (0..D).any(|axis| {
-            self.low[axis].is_some_and(|end| first[axis] <= end.node)
-                || self.high[axis].is_some_and(|end| first[axis] + edge as i64 > end.node)
-        })
+    /// Returns true if `node` is beyond a wall on its plane.
+    pub(crate) fn is_beyond_plane(&self, node: [i64; D]) -> bool {
+        (0..D).any(|axis| self.is_beyond_on(axis, node[axis]))
     }
 
-    /// The velocity of node `node` of `mass` after the walls of [`WallStyle::Nodes`] have acted on
-    /// it, axis after axis; adds what they take to `taken`, by the number of the side.
-    #[inline(always)]
-    pub(crate) fn constrain<T: Scalar>(
-        &self,
-        mut velocity: Vector<T, D>,
-        node: [i64; D],
-        mass: T,
-        taken: &mut [Taken<D>],
-    ) -> Vector<T, D> {
-        for axis in 0..D {
-            let low = self.low[axis].filter(|end| node[axis] <= end.node);
-            let high = self.high[axis].filter(|end| node[axis] >= end.node);
-            for (end, inward) in [(low, 1.0), (high, -1.0)] {
-                let Some(end) = end else { continue };
-                let free = velocity;
-                velocity = end.contact.constrain(free, axis, inward);
-                let change = Vector::from_fn(|i| (velocity[i] - free[i]).to_f64());
-                let at = node.map(|node| node as f64);
-                taken[side(axis, inward < 0.0)].add(at, change * -mass.to_f64()); // (13)
-            }
-        }
-        velocity
-    }
-
-    /// Whether `node` is beyond a wall on its plane.
-    pub(crate) fn is_behind_plane(&self, node: [i64; D]) -> bool {
-        (0..D).any(|axis| self.is_behind_on(axis, node[axis]))
-    }
-
-    /// Whether nodes with that number on `axis` are beyond a wall across it.
-    pub(crate) fn is_behind_on(&self, axis: usize, node: i64) -> bool {
+    /// Returns true if nodes with index `node` on `axis` are beyond a wall across it.
+    pub(crate) fn is_beyond_on(&self, axis: usize, node: i64) -> bool {
         let mut across = self.planes.iter().filter(|wall| wall.axis == axis);
         across.any(|wall| (node - wall.node) * i64::from(wall.inward) < 0)
     }
 
-    /// Whether a wall on its plane has any of the nodes `first .. first + edge` beyond it.
-    pub(crate) fn passes(&self, first: [i64; D], edge: i64) -> bool {
+    /// Returns true if any of the nodes `first .. first + edge` is beyond a wall on its plane.
+    pub(crate) fn have_nodes_beyond(&self, first: [i64; D], edge: i64) -> bool {
         self.planes.iter().any(|plane| {
             let first = first[plane.axis];
             if plane.inward > 0 {
@@ -315,7 +291,7 @@ impl<const D: usize> Walls<D> {
         })
     }
 
-    /// `node` on its periodic axes brought into 0 .. period.
+    /// Returns `node` with its indices on periodic axes brought into 0 .. period.
     pub(crate) fn canonical(&self, mut node: [i64; D]) -> [i64; D] {
         for axis in 0..D {
             if let Some(period) = self.period[axis] {

@@ -1,56 +1,46 @@
-//! Colliders that stand on a side of the domain go on beyond it.
+//! Colliders that stand on a side of the domain are extended beyond it.
 //!
 //! ```text
-//!   │   ●──▶ out     a node at the foot of a box: nearest is the face that it stands on, and out would be down,
-//!   │   ▼            into the floor
+//!   │   ●──▶ out     A node at the foot of a box: the face that the box stands on is the nearest one, and out of it
+//!   │   ▼            is down, into the floor.
 //!  ─┴─────────────   floor
 //! ```
-//! A flat face on a wall, or beyond it, meets no material. So it is moved out until no point inside of the domain is
-//! nearer to it than to the others.
+//! A flat face on a wall, or beyond it, meets no material. So it is moved out until no point inside the domain is nearer
+//! to it than to the other faces.
 
-use super::collider::{Collider, Motion};
-use super::walls::Walls;
+use crate::boundary::walls::{Side, Walls};
 use crate::geometry::Primitive;
 use crate::math::Vector;
+use crate::setup::{Collider, Motion};
 
-/// A face is on a side if it is no farther from it than this \[cells\].
+/// The largest distance of a face from the side that it stands on \[cells\].
 const TOUCHES: f64 = 1e-6;
 
-/// Cosine of the angle from which on a face is parallel to a side.
+/// A face is parallel to a side if the cosine of the angle between them is at least this.
 const PARALLEL: f64 = 1.0 - 1e-12;
 
-/// A side of the domain, in cells from the origin.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Side {
-    pub(crate) axis: usize,
-    /// Its place on `axis`.
-    pub(crate) at: f64,
-    /// +1 if the domain is below it, else −1.
-    pub(crate) out: f64,
-}
-
 impl Side {
-    /// How far `x` is beyond it; negative inside of the domain.
+    /// Returns how far `x` is beyond the side; negative inside the domain.
     fn depth<const D: usize>(&self, x: [f64; D]) -> f64 {
         (x[self.axis] - self.at) * self.out
     }
 
-    /// Whether `direction` points straight out of it.
+    /// Returns true if `direction` points straight out of the domain.
     fn is_faced<const D: usize>(&self, direction: Vector<f64, D>) -> bool {
         direction[self.axis] * self.out >= PARALLEL
     }
 }
 
 impl<const D: usize> Collider<D> {
-    /// With what of its primitives stands on a side of the domain going on beyond that; lengths in cells. A face that
-    /// leaves its side, since the collider moves, is left where it is.
-    pub(crate) fn rooted(mut self, walls: &Walls<D>) -> Self {
+    /// Extends the primitives that stand on a side of the domain beyond that side; lengths are in cells. A face that leaves
+    /// its side, since the collider moves, stays where it is.
+    pub(crate) fn extended(mut self, walls: &Walls<D>) -> Self {
         for side in walls
             .ends()
             .filter(|side| self.motion.stays_on(side.axis, &self.center))
         {
             for primitive in &mut self.primitives {
-                primitive.root(side);
+                primitive.extend(side);
             }
         }
         self
@@ -58,7 +48,7 @@ impl<const D: usize> Collider<D> {
 }
 
 impl<const D: usize> Motion<D> {
-    /// Whether points that are on a plane across `axis` never leave it.
+    /// Returns true if points on a plane across `axis` never leave it.
     fn stays_on(&self, axis: usize, center: &[f64; D]) -> bool {
         let turns_in_it = |turn: &[f64; 3]| (0..3).all(|i| i == axis || turn[i] == 0.0);
         match self {
@@ -72,9 +62,9 @@ impl<const D: usize> Motion<D> {
 }
 
 impl<const D: usize> Primitive<D> {
-    /// Moves a flat face that looks out of `side`, from it or from beyond it, out so far that it is not the nearest
-    /// one for any point inside of the domain.
-    fn root(&mut self, side: Side) {
+    /// Moves each flat face that stands on `side`, or beyond it, and faces out of it. It is moved so far that it is not
+    /// the nearest face for any point inside the domain.
+    fn extend(&mut self, side: Side) {
         match self {
             Self::Box { center, half, axes } => {
                 for face in 0..D {
@@ -82,7 +72,7 @@ impl<const D: usize> Primitive<D> {
                     for sign in [-1.0, 1.0] {
                         let out = axis * sign;
                         let depth = side.depth((Vector(*center) + out * half[face]).0);
-                        // No point is farther from all others.
+                        // The largest distance of a point inside from all other faces.
                         let needed = (0..D)
                             .filter(|&i| i != face)
                             .map(|i| half[i])
@@ -109,15 +99,15 @@ impl<const D: usize> Primitive<D> {
                     }
                 }
             }
-            Self::Polygon { points } => *points = rooted_polygon(points, side),
-            // They have no flat face that ends.
+            Self::Polygon { points } => *points = extended_polygon(points, side),
+            // These have no flat face that ends.
             Self::Ball { .. } | Self::HalfSpace { .. } | Self::Rod { round: true, .. } => {}
         }
     }
 }
 
-/// The polygon with a foot under each stretch of its outline that is on `side` or beyond it.
-fn rooted_polygon<const D: usize>(points: &[[f64; D]], side: Side) -> Vec<[f64; D]> {
+/// Returns the polygon with a foot below each stretch of its outline that is on `side` or beyond it.
+fn extended_polygon<const D: usize>(points: &[[f64; D]], side: Side) -> Vec<[f64; D]> {
     if side.axis >= 2 {
         return points.to_vec();
     }
@@ -125,24 +115,24 @@ fn rooted_polygon<const D: usize>(points: &[[f64; D]], side: Side) -> Vec<[f64; 
         let on_axis = || points.iter().map(|point| point[axis]);
         on_axis().fold(f64::NEG_INFINITY, f64::max) - on_axis().fold(f64::INFINITY, f64::min)
     };
-    // No point inside is farther from what is not on the side.
+    // The largest distance of a point inside from the edges that are not on the side.
     let needed = extent(1 - side.axis);
     let n = points.len();
     let is_beyond = |i: usize| side.depth(points[i % n]) >= -TOUCHES;
-    let mut rooted = Vec::with_capacity(n + 2);
+    let mut extended = Vec::with_capacity(n + 2);
     for (i, &point) in points.iter().enumerate() {
         let (before, after) = (is_beyond(i + n - 1), is_beyond(i + 1));
         if !is_beyond(i) || !(before || after) {
-            rooted.push(point);
+            extended.push(point);
             continue;
         }
         let mut foot = point;
         foot[side.axis] = side.at + side.out * side.depth(point).max(0.0) + side.out * needed;
         match (before, after) {
-            (false, _) => rooted.extend([point, foot]),
-            (_, false) => rooted.extend([foot, point]),
-            _ => rooted.push(foot),
+            (false, _) => extended.extend([point, foot]),
+            (_, false) => extended.extend([foot, point]),
+            _ => extended.push(foot),
         }
     }
-    rooted
+    extended
 }

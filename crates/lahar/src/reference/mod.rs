@@ -14,16 +14,15 @@
 //! bring, because FLIP and the staggered energy ask for a node's velocity before forces.
 //! Lever arms are r = x_i − x_p.
 
-use crate::boundary::Collider;
-use crate::boundary::collider::Moving;
-use crate::boundary::contact::{Column, ColumnNode};
-use crate::boundary::impulse::Taken;
-use crate::boundary::pointer::Push;
-use crate::boundary::surface::{NearNode, Room, hold, near, put_out};
+use crate::boundary::colliders::contact::{self, NearNode, Scratch, near};
+use crate::boundary::colliders::placed::Moving;
+use crate::boundary::colliders::projection::project_out;
+use crate::boundary::impulse::Impulse;
+use crate::boundary::pointer::{NodePointer, ParticlePointer};
 use crate::boundary::walls::Walls;
+use crate::boundary::walls::fold::{Triple, TripleNode};
 use crate::error::SetupError;
-use crate::forces;
-use crate::grid::{NodePointer, OUTSIDE};
+use crate::force;
 use crate::kernel::{BSpline, Cubic, Linear, Quadratic};
 use crate::material::rheology::shear_rate;
 use crate::material::{
@@ -31,11 +30,13 @@ use crate::material::{
     for_model, start,
 };
 use crate::math::{Matrix, Vector};
+use crate::setup::Collider;
 use crate::setup::Pointer;
 use crate::setup::check::CheckedSetup;
 use crate::setup::{
     CORRECTION_INTERVAL, Deformation, ForceForm, Kernel, ParticleBatch, Setup, Transfer,
 };
+use crate::volume::filling::OUTSIDE;
 use std::collections::BTreeMap;
 
 /// A particle of the oracle.
@@ -142,7 +143,7 @@ impl<const D: usize> Reference<D> {
             reference.hold(particle);
             // Its velocity is what it was given.
             let given = particle.velocity;
-            reference.put_out(particle, &colliders);
+            reference.project_out(particle, &colliders);
             particle.velocity = given;
         }
         reference.particles = particles;
@@ -205,7 +206,7 @@ impl<const D: usize> Reference<D> {
         for p in &mut self.particles {
             let start = self.starts[p.id as usize];
             let mut a = [[0.0; D]];
-            forces::accelerations(
+            force::accelerations(
                 &self.setup.forces,
                 true,
                 self.time,
@@ -293,7 +294,7 @@ impl<const D: usize> Reference<D> {
                 core::array::from_fn(|axis| node[axis] + number / 3_i64.pow(axis as u32) % 3 - 1)
             });
             let inside = around.all(|beside| {
-                self.walls.is_behind_plane(beside) || full(&self.walls.canonical(beside))
+                self.walls.is_beyond_plane(beside) || full(&self.walls.canonical(beside))
             });
             if inside && full(node) {
                 (sums[0] + sums[1]) / cell - 1.0
@@ -419,7 +420,7 @@ impl<const D: usize> Reference<D> {
 
     /// Forces and walls, for a substep of `dt` \[s\]. Nodes without mass are skipped.
     pub fn update_grid(&self, grid: &Grid<Momentum<D>, D>, dt: f64) -> Grid<Velocity<D>, D> {
-        let mut taken = vec![Taken::NOTHING; 2 * D + self.colliders.len()];
+        let mut taken = vec![Impulse::ZERO; 2 * D + self.colliders.len()];
         let gravity = Vector(self.setup.gravity);
         let with_mass = grid.iter().filter(|(_, n)| n.mass > 0.0);
         let mut grid = with_mass
@@ -430,7 +431,7 @@ impl<const D: usize> Reference<D> {
                 });
                 let mut field = [[0.0; D]];
                 let all = &self.setup.forces;
-                forces::accelerations(
+                force::accelerations(
                     all,
                     false,
                     self.time,
@@ -441,7 +442,7 @@ impl<const D: usize> Reference<D> {
                 );
                 let mut free = over(n.momentum + n.impulse, n.mass);
                 free += (gravity + Vector(field[0])) * dt; // (9)
-                if let Some((kept, medium)) = forces::drag(all, dt) {
+                if let Some((kept, medium)) = force::drag(all, dt) {
                     free = Vector(medium) + (free - Vector(medium)) * kept; // (10)
                 }
                 if let Some(pointer) = self.pointer {
@@ -476,7 +477,7 @@ impl<const D: usize> Reference<D> {
             .map(|cells| cells.map(|cells| cells as f64));
         let of = |collider: &Collider<D>| {
             let mut moving = Moving::of(collider, period);
-            moving.put(collider, self.time, dt);
+            moving.move_to(collider, self.time, dt);
             moving
         };
         self.colliders.iter().map(of).collect()
@@ -499,7 +500,7 @@ impl<const D: usize> Reference<D> {
         collider: &Moving<D>,
         mut nodes: Vec<NearNode<D>>,
         grid: &mut Grid<Velocity<D>, D>,
-        taken: &mut Taken<D>,
+        taken: &mut Impulse<D>,
     ) {
         for near in &mut nodes {
             let n = &grid[&near.node];
@@ -515,8 +516,8 @@ impl<const D: usize> Reference<D> {
             Transfer::Flip { blend } => blend,
             Transfer::Pic | Transfer::Apic => 0.0,
         };
-        let room = &mut Room::default();
-        hold(&mut nodes, find, collider.contact, blend, taken, room);
+        let scratch = &mut Scratch::default();
+        contact::constrain(&mut nodes, find, collider.contact, blend, taken, scratch);
         for near in &nodes {
             let velocity = Velocity {
                 mass: near.mass,
@@ -543,24 +544,24 @@ impl<const D: usize> Reference<D> {
                     before: Vector([0.0; D]),
                     after: Vector([0.0; D]),
                 };
-                let [beyond, plane, inside] = places.map(|place| {
+                let [beyond, on_plane, inside] = places.map(|place| {
                     let node = grid.get(&place).unwrap_or(&nothing);
-                    ColumnNode {
+                    TripleNode {
                         mass: node.mass,
                         velocity: node.after,
                         before: node.before,
                     }
                 });
-                let mut column = Column {
+                let mut triple = Triple {
                     beyond,
-                    plane,
+                    on_plane,
                     inside,
                 };
                 let inward = f64::from(wall.inward);
-                if !wall.contact.fold(&mut column, wall.axis, inward) {
+                if !wall.contact.fold(&mut triple, wall.axis, inward) {
                     continue;
                 }
-                let folded = [column.beyond, column.plane, column.inside];
+                let folded = [triple.beyond, triple.on_plane, triple.inside];
                 for (place, node) in places.into_iter().zip(folded) {
                     let velocity = Velocity {
                         mass: node.mass,
@@ -575,7 +576,7 @@ impl<const D: usize> Reference<D> {
 
     /// G2P for a substep of `dt` \[s\].
     pub fn grid_to_particles(&mut self, grid: &Grid<Velocity<D>, D>, dt: f64) {
-        let push = Push::of(self.pointer, self.origin.0, self.setup.dx, dt);
+        let push = ParticlePointer::of(self.pointer, self.origin.0, self.setup.dx, dt);
         let colliders = self.moving(dt);
         let mut particles = core::mem::take(&mut self.particles);
         for particle in &mut particles {
@@ -618,7 +619,7 @@ impl<const D: usize> Reference<D> {
                 particle.velocity = push.act(particle.velocity, self.in_cells(particle)); // (12)
             }
             self.keep_in_domain(particle);
-            self.put_out(particle, &colliders);
+            self.project_out(particle, &colliders);
         }
         let (kept, gone) = particles.into_iter().partition(|p| !self.is_outside(p));
         self.particles = kept;
@@ -630,7 +631,7 @@ impl<const D: usize> Reference<D> {
         let dx = self.setup.dx;
         for axis in 0..D {
             let x = &mut particle.position[axis];
-            let (low, high) = self.walls.hold[axis];
+            let (low, high) = self.walls.bounds[axis];
             if let Some(low) = low {
                 *x = x.max(self.origin[axis] + low * dx);
             }
@@ -641,11 +642,11 @@ impl<const D: usize> Reference<D> {
     }
 
     /// Colliders put a particle that is inside on their surface.
-    fn put_out(&self, particle: &mut Particle<D>, colliders: &[Moving<D>]) {
+    fn project_out(&self, particle: &mut Particle<D>, colliders: &[Moving<D>]) {
         let mut x = self.in_cells(particle);
-        let (hold, motion) = (&self.walls.hold, (&mut x, &mut particle.velocity));
+        let (hold, motion) = (&self.walls.bounds, (&mut x, &mut particle.velocity));
         let dx = self.setup.dx;
-        if put_out(colliders, hold, [0.0; D], motion, dx, |_, _, _| {}) {
+        if project_out(colliders, hold, [0.0; D], motion, dx, |_, _, _| {}) {
             particle.position = self.origin + x * self.setup.dx;
         }
     }
@@ -966,8 +967,8 @@ fn take_in<const D: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::boundary::{Contact, Domain, Sides, WallStyle};
     use crate::material::{Corotated, Dust, Material};
+    use crate::setup::{Contact, Domain, Sides, WallStyle};
 
     /// A handful of particles that differ in everything.
     fn handful<const D: usize>(shift: [f64; D]) -> ParticleBatch<D> {
