@@ -1,8 +1,8 @@
-//! From the name of an instruction set to code compiled for it.
+//! Dispatch: from an instruction set to the code that is compiled for it.
 
 use fearless_simd::Level;
 
-/// What never fuses a multiply and an add: SSE2 where that is the baseline, else plain scalars.
+/// Returns the level that never fuses a multiply and an add: SSE2 where that is the baseline, else plain scalars.
 pub(crate) fn portable() -> Level {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     {
@@ -15,8 +15,8 @@ pub(crate) fn portable() -> Level {
 }
 
 /// Runs an expression with `$simd` bound to the token of the given level, compiled for that
-/// level's instructions. Unlike the library's own `dispatch!` it has only the levels of [`Isa`],
-/// since each is a copy of the code.
+/// level's instructions. It has only the levels of [`Isa`](crate::setup::Isa), unlike the library's own `dispatch!`, since
+/// each level is a copy of the code.
 macro_rules! on_level {
     ($level:expr, $simd:ident => $body:expr) => {{
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

@@ -1,14 +1,14 @@
-//! Flush-to-zero and denormals-are-zero while computing: resting fluid makes denormal numbers, and
-//! they cost a factor of five.
+//! Flush-to-zero and denormals-are-zero while computing. Resting fluid makes denormal numbers, which cost a factor of
+//! five.
 //!
-//! Rust's own semantics assume the default mode; the guard is held only around the solver's loops,
-//! whose results it changes in the same way on every thread.
+//! Rust's own semantics assume the default mode. The guard lives only around the solver's loops, whose results it changes
+//! in the same way on every thread.
 #![expect(
     unsafe_code,
     reason = "the control register has no safe access; the deprecated intrinsics have no successor"
 )]
 
-/// Holds the mode on the thread that made it; puts the old one back when dropped.
+/// Keeps the mode on for the thread that has made it, and restores the old mode when dropped.
 pub(crate) struct FlushToZero {
     #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     before: u64,

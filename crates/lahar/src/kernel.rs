@@ -1,7 +1,7 @@
-//! B-splines: how much a particle and a node have to do with each other.
+//! B-splines: the weights between particles and nodes.
 //!
 //! In cells, on one axis: a particle's *base* node is the lowest of the [`BSpline::NODES`] it
-//! touches, and `frac` ∈ [0, 1) is how far the particle is past the first place that has this base.
+//! touches, and `frac` ∈ [0, 1) is the distance of the particle from the first place that has this base.
 //! So the particle sits `s = frac + OFFSET` cells above its base node:
 //!
 //! ```text
@@ -12,38 +12,38 @@
 
 use crate::math::Real;
 
-/// The largest number of nodes a kernel touches on an axis; weights beyond [`BSpline::NODES`] are 0.
+/// The largest number of nodes that a kernel touches per axis; weights beyond [`BSpline::NODES`] are 0.
 pub const STENCIL: usize = 4;
 
 /// A B-spline on one axis; the weight of a node is the product over axes.
 pub trait BSpline: Copy + Send + Sync + 'static {
-    /// Nodes touched on an axis.
+    /// Nodes touched per axis.
     const NODES: usize;
     /// `s − frac`, see the module's page \[cells\].
     const OFFSET: f64;
-    /// The node, counted from the base, that moments are taken about: the nearest in the middle, so
-    /// that their rounding is least.
+    /// The node, counted from the base, that moments are taken about. It is the one nearest to the middle, so that their
+    /// rounding is least.
     const CENTER: usize;
-    /// D⁻¹ dx² of equation (3): Σ w r rᵀ = dx²/`INVERSE_INERTIA` I. Linear: none that holds
-    /// anywhere, so infinite.
+    /// D⁻¹ dx² of equation (3): Σ w r rᵀ = dx²/`INVERSE_INERTIA` I. Infinite for the linear kernel, whose inertia depends
+    /// on the particle's place.
     const INVERSE_INERTIA: f64;
 
-    /// The weights w of nodes base + 0, 1, 2, 3.
+    /// Returns the weights w of nodes base + 0, 1, 2, 3.
     fn weights<R: Real>(frac: R) -> [R; STENCIL];
 
-    /// dx ∂w/∂x_p of nodes base + 0, 1, 2, 3: the derivative by the particle's position in cells.
+    /// Returns dx ∂w/∂x_p of nodes base + 0, 1, 2, 3: the derivative by the particle's position in cells.
     fn gradients<R: Real>(frac: R) -> [R; STENCIL];
 }
 
-/// Degree 1.
+/// The B-spline of degree 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Linear;
 
-/// Degree 2.
+/// The B-spline of degree 2.
 #[derive(Clone, Copy, Debug)]
 pub struct Quadratic;
 
-/// Degree 3.
+/// The B-spline of degree 3.
 #[derive(Clone, Copy, Debug)]
 pub struct Cubic;
 

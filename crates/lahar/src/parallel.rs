@@ -1,9 +1,9 @@
-//! Two halves of the work at the same time, where threads are compiled in.
+//! Parallel work: two halves at the same time, where threads are compiled in.
 //!
-//! All parallel work in this crate is divided by halving lists of blocks, so that each half owns
-//! its slices. How far it is divided depends on the number of threads; results do not.
+//! All parallel work in this crate is divided by halving lists of blocks, so that each half owns its slices. How far it is
+//! divided depends on the number of threads; results do not.
 
-/// Runs both, perhaps at the same time.
+/// Runs `a` and `b`, perhaps at the same time.
 #[cfg(feature = "threads")]
 pub(crate) fn join<A: Send, B: Send>(
     a: impl FnOnce() -> A + Send,
@@ -12,7 +12,7 @@ pub(crate) fn join<A: Send, B: Send>(
     rayon::join(a, b)
 }
 
-/// Runs both, one after the other.
+/// Runs `a` and then `b`.
 #[cfg(not(feature = "threads"))]
 pub(crate) fn join<A: Send, B: Send>(
     a: impl FnOnce() -> A + Send,
@@ -21,18 +21,18 @@ pub(crate) fn join<A: Send, B: Send>(
     (a(), b())
 }
 
-/// Pieces a thread gets, so that one that is late can be helped.
-const PIECES_A_THREAD: usize = 8;
+/// Pieces per thread, so that other threads can help one that is late.
+const PIECES_PER_THREAD: usize = 8;
 
-/// How much of `total` is worth a piece of its own, `smallest` at the least.
+/// Returns the size of the pieces that `total` is divided into: at least `smallest`.
 pub(crate) fn grain(total: usize, smallest: usize) -> usize {
     match threads() {
         1 => usize::MAX,
-        threads => (total / (threads * PIECES_A_THREAD)).max(smallest),
+        threads => (total / (threads * PIECES_PER_THREAD)).max(smallest),
     }
 }
 
-/// Threads that [`join`] may use.
+/// Returns the number of threads that [`join`] may use.
 pub(crate) fn threads() -> usize {
     #[cfg(feature = "threads")]
     {
@@ -42,8 +42,7 @@ pub(crate) fn threads() -> usize {
     1
 }
 
-/// `work(first, piece)` on pieces of whole chunks of `data`, `first` being the index of the piece's
-/// first chunk.
+/// Calls `work(first, piece)` on pieces of whole chunks of `data`; the index of the piece's first chunk is `first`.
 pub(crate) fn for_chunks<T: Send>(
     data: &mut [T],
     chunk: usize,

@@ -1,5 +1,5 @@
-//! Asking memory for rows before they are needed: a substep walks along some twenty columns at once, more
-//! than processors foresee by themselves.
+//! Prefetching of rows before they are needed. A substep walks along some twenty columns at once, more than processors
+//! foresee by themselves.
 #![expect(
     unsafe_code,
     reason = "the instruction takes an address; measured in docs/performance.md"
@@ -7,33 +7,33 @@
 
 use crate::particles::Rows;
 
-/// Bytes that memory is asked for at a time.
+/// Bytes of a line of the cache.
 const LINE: usize = 64;
 
-/// Asks for rows `start .. start + CHUNK` of each column that has them. Changes nothing.
+/// Prefetches rows `start .. start + CHUNK` of each column that has them. Changes nothing.
 #[inline(always)]
 pub(crate) fn prefetch_chunk<T>(columns: &[impl core::ops::Deref<Target = [T]>], start: usize) {
     for column in columns {
         if let Some(rows) = column.get(start..).and_then(|rows| rows.first_chunk()) {
             let rows: &Rows<T> = rows;
             for line in rows.chunks(LINE / size_of::<T>()) {
-                ask(line);
+                prefetch_line(line);
             }
         }
     }
 }
 
-/// Asks for `numbers`. Changes nothing.
+/// Prefetches `numbers`. Changes nothing.
 #[inline(always)]
 pub(crate) fn prefetch<T>(numbers: &[T]) {
     for line in numbers.chunks(LINE / size_of::<T>()) {
-        ask(line);
+        prefetch_line(line);
     }
 }
 
-/// Asks for the line of the cache in which `numbers` begins.
+/// Prefetches the line of the cache in which `numbers` begins.
 #[inline(always)]
-fn ask<T>(numbers: &[T]) {
+fn prefetch_line<T>(numbers: &[T]) {
     #[cfg(target_arch = "x86_64")]
     // SAFETY: the address is that of a slice; the instruction reads nothing that the program could see, and
     // is part of every x86-64 processor.
@@ -51,7 +51,7 @@ mod tests {
     use super::{prefetch, prefetch_chunk};
 
     #[test]
-    fn it_asks_for_what_is_there_only() {
+    fn rows_that_do_not_exist_are_skipped() {
         let columns = [vec![1.0_f32; 100], Vec::new(), vec![2.0; 3]];
         for start in [0, 90, 99, 100, 1000] {
             prefetch_chunk(&columns, start);

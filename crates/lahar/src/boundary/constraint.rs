@@ -14,7 +14,7 @@ use crate::setup::{Scheme, Transfer};
 #[derive(Clone, Debug)]
 pub(crate) struct Boundaries<const D: usize> {
     pub(crate) faces: WallFaces<D>,
-    /// By collider.
+    /// The nodes around each collider.
     near: Vec<NearNodes<D>>,
     /// The share of its own velocity that a particle keeps: FLIP's blend.
     blend: f64,

@@ -22,7 +22,7 @@ pub(crate) const SIDES: [[&str; 2]; 3] = [["left", "right"], ["bottom", "top"], 
 /// An impulse of the material on a boundary, and its moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Impulse<const D: usize> {
-    /// \[kg m/s\]
+    /// The sum of impulses \[kg m/s\].
     pub(crate) impulse: Vector<f64, D>,
     /// About the point that lengths are counted from; per unit of length.
     pub(crate) angular: [f64; 3],

@@ -1,11 +1,11 @@
-//! The forces of a setup added up: accelerations at places, and one drag of all drags.
+//! Forces other than stress: the sum of the setup's accelerations, one drag of all drags, and their effect on nodes.
 
 pub(crate) mod nodes;
 
 use crate::setup::Force;
 
-/// Σ of the accelerations at `positions` \[m/s²\], of the forces that act on particles or of the
-/// others, into `out`; `scratch` is as long.
+/// Writes the sum of the accelerations at `positions` \[m/s²\] to `out`: those of the forces that act on particles, or of
+/// the others. `scratch` is as long.
 pub(crate) fn accelerations<const D: usize>(
     forces: &[Force<D>],
     on_particles: bool,
@@ -24,15 +24,15 @@ pub(crate) fn accelerations<const D: usize>(
     }
 }
 
-/// Whether any force is an acceleration of nodes.
+/// Returns true if any force is an acceleration of nodes.
 pub(crate) fn any_on_nodes<const D: usize>(forces: &[Force<D>]) -> bool {
     let acts =
         |force: &Force<D>| !force.acts_on_particles() && !matches!(force, Force::Drag { .. });
     forces.iter().any(acts)
 }
 
-/// All drags as one: with K = Σ k and u = Σ k u / K, what is left of v − u after `dt`, and u.
-/// `None`: nothing drags.
+/// Returns all drags as one: with K = Σ k and u = Σ k u / K, the share of v − u that is left after `dt`, and u. Returns
+/// `None` if there is no drag.
 pub(crate) fn drag<const D: usize>(forces: &[Force<D>], dt: f64) -> Option<(f64, [f64; D])> {
     let (mut rates, mut weighted) = (0.0, [0.0; D]);
     for force in forces {

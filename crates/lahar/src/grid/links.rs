@@ -1,4 +1,4 @@
-//! Which tiles cover which blocks.
+//! Links between tiles and the blocks that they cover.
 
 use super::tiles::{Piece, Reach, axis_pieces};
 
@@ -25,7 +25,7 @@ impl<const D: usize> Link<D> {
         }
     }
 
-    /// Its nodes within `reach`: `low ≤ node < high` in the block, if there are any.
+    /// Returns its nodes within `reach`, if there are any: `low ≤ node < high` in the block.
     #[inline(always)]
     pub(super) fn within(&self, reach: Reach<D>) -> Option<([usize; D], [usize; D])> {
         let (mut low, mut high) = ([0; D], [0; D]);
@@ -42,26 +42,26 @@ impl<const D: usize> Link<D> {
     }
 }
 
-/// All links, twice: as the sums over tiles and as the copies of nodes read them.
+/// All links in two orders: that of the sums over tiles, and that of the copies of nodes.
 #[derive(Clone, Debug)]
 pub(super) struct Links<const D: usize> {
-    /// By block, then ascending coordinates of the tile's block.
+    /// By block, and then by ascending coordinates of the tile's block.
     by_block: Vec<Link<D>>,
     starts_of_blocks: Vec<u32>,
-    /// By tile, so that what a tile reads lies side by side.
+    /// By tile, so that the links of a tile lie side by side.
     by_tile: Vec<Link<D>>,
     starts_of_tiles: Vec<u32>,
     /// Buffers that live from sort to sort.
-    room: Room<D>,
+    scratch: Scratch<D>,
 }
 
 #[derive(Clone, Debug)]
-struct Room<const D: usize> {
+struct Scratch<const D: usize> {
     pieces: [Vec<Piece>; D],
     grown: Vec<[i32; D]>,
-    /// By the number of a link of its tile, the block that the last tile's had.
+    /// By the number of a link in its tile, the block of that link of the last tile.
     last: Vec<usize>,
-    /// By block, where its next link goes.
+    /// By block, the place of its next link.
     next: Vec<u32>,
 }
 
@@ -72,7 +72,7 @@ impl<const D: usize> Links<D> {
             starts_of_blocks: vec![0],
             by_tile: Vec::new(),
             starts_of_tiles: vec![0],
-            room: Room {
+            scratch: Scratch {
                 pieces: core::array::from_fn(|_| Vec::new()),
                 grown: Vec::new(),
                 last: Vec::new(),
@@ -86,7 +86,7 @@ impl<const D: usize> Links<D> {
             + 4 * (self.starts_of_blocks.capacity() + self.starts_of_tiles.capacity())
     }
 
-    /// The links of a block, in the order in which its nodes are summed; none beyond the last block.
+    /// Returns the links of a block, in the order in which its nodes are summed; none beyond the last block.
     #[inline(always)]
     pub(super) fn of_block(&self, block: usize) -> &[Link<D>] {
         match self.starts_of_blocks.get(block..block + 2) {
@@ -95,14 +95,14 @@ impl<const D: usize> Links<D> {
         }
     }
 
-    /// The links of a tile.
+    /// Returns the links of a tile.
     #[inline(always)]
     pub(super) fn of_tile(&self, tile: usize) -> &[Link<D>] {
         let ends = &self.starts_of_tiles[tile..tile + 2];
         &self.by_tile[ends[0] as usize..ends[1] as usize]
     }
 
-    /// Finds the `blocks` that the tiles of `tile_blocks` cover, and how; both ascending.
+    /// Finds the `blocks` that the tiles of `tile_blocks` cover, and links them; both lists are ascending.
     pub(super) fn find(
         &mut self,
         tile_blocks: &[[i32; D]],
@@ -136,7 +136,7 @@ impl<const D: usize> Links<D> {
         period: Option<i64>,
         blocks: &mut Vec<[i32; D]>,
     ) {
-        let Room { pieces, grown, .. } = &mut self.room;
+        let Scratch { pieces, grown, .. } = &mut self.scratch;
         let pieces = &mut pieces[axis];
         grown.clear();
         if period.is_some() {
@@ -174,7 +174,7 @@ impl<const D: usize> Links<D> {
         period: &[Option<i64>; D],
         blocks: &[[i32; D]],
     ) {
-        let Room { pieces, last, .. } = &mut self.room;
+        let Scratch { pieces, last, .. } = &mut self.scratch;
         last.clear();
         self.by_tile.clear();
         self.starts_of_tiles.clear();
@@ -218,22 +218,22 @@ impl<const D: usize> Links<D> {
             starts[block + 1] += starts[block];
         }
         self.by_block.clone_from(&self.by_tile); // for its length: all are replaced
-        self.room.next.clone_from(starts);
+        self.scratch.next.clone_from(starts);
         for link in &self.by_tile {
-            let next = &mut self.room.next[link.block as usize];
+            let next = &mut self.scratch.next[link.block as usize];
             self.by_block[*next as usize] = *link;
             *next += 1;
         }
     }
 }
 
-/// `block` with another index on `axis`.
+/// Returns `block` with another index on `axis`.
 fn with<const D: usize>(mut block: [i32; D], axis: usize, index: i32) -> [i32; D] {
     block[axis] = index;
     block
 }
 
-/// Where `wanted` is in `blocks`, perhaps at `guess`, or a little behind `from`.
+/// Returns the place of `wanted` in `blocks`, which is often `guess`, or a little behind `from`.
 fn place<const D: usize>(
     blocks: &[[i32; D]],
     wanted: [i32; D],
@@ -257,7 +257,7 @@ mod tests {
     use super::*;
     use std::collections::{BTreeMap, BTreeSet};
 
-    /// Blocks here and there: neighbours, rows, and one far away.
+    /// Scattered blocks: neighbors, rows, and one far away.
     fn scattered<const D: usize>() -> Vec<[i32; D]> {
         let mut state = 12345_u32;
         let mut blocks = BTreeSet::from([[1 << 26; D], [-(1 << 26); D]]);
@@ -274,7 +274,7 @@ mod tests {
     /// in the order of the tiles' periodic images.
     fn check<const D: usize>(tiles: &[[i32; D]], tile_edge: usize, period: [Option<i64>; D]) {
         let (mut links, mut blocks) = (Links::new(), Vec::new());
-        links.find(&[[5; D]], tile_edge, &[None; D], &mut blocks); // what is left of another sort
+        links.find(&[[5; D]], tile_edge, &[None; D], &mut blocks); // leaves buffers of another sort
         links.find(tiles, tile_edge, &period, &mut blocks);
         assert!(blocks.is_sorted_by(|a, b| a < b));
 

@@ -84,22 +84,22 @@ impl<Q, T: Scalar> NodeField<Q, T> {
         self.numbers
     }
 
-    /// Quads per node.
+    /// Returns the number of quads per node.
     pub(crate) fn layers(&self) -> usize {
         self.layers
     }
 
-    /// Numbers per block.
+    /// Returns the number of numbers per block.
     pub(crate) fn block_len(&self) -> usize {
         BLOCK_NODES * QUAD * self.layers
     }
 
-    /// All numbers.
+    /// Returns all numbers of the field.
     pub(crate) fn numbers(&self) -> &[T] {
         &self.numbers
     }
 
-    /// All numbers, to change without changing the quantity that they are.
+    /// Returns all numbers, to change without changing the quantity that they are.
     pub(crate) fn numbers_mut(&mut self) -> &mut [T] {
         &mut self.numbers
     }

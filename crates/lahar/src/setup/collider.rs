@@ -1,54 +1,55 @@
-//! Primitive bodies that stand or move as they are told: shape, contact and motion, as plain data.
+//! Colliders as plain data: shape, contact and prescribed motion.
 
 use super::Contact;
 use crate::error::SetupError;
 use crate::geometry::Primitive;
 
-/// A body that stops the material and is not moved by it.
+/// A body with a prescribed motion that stops the material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Collider<const D: usize> {
-    /// Its name, for messages and for what is measured on it.
+    /// Its name, for messages and for the forces that are measured on it.
     pub name: String,
-    /// What it is made of, at rest: all that is in any of them.
+    /// Its shape at rest: the union of these primitives, which [`Shape::primitives`](crate::geometry::Shape::primitives)
+    /// makes of a shape.
     pub primitives: Vec<Primitive<D>>,
-    /// What it does to the material.
+    /// Its contact with the material.
     pub contact: Contact,
     /// The point that it turns about, in the coordinates of `primitives` \[m\].
     pub center: [f64; D],
-    /// How it moves.
+    /// Its motion.
     pub motion: Motion<D>,
 }
 
-/// How a collider moves; time is the simulation's.
+/// The motion of a collider. Times are those of the simulation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Motion<const D: usize> {
-    /// Not at all.
+    /// It does not move.
     Still,
-    /// From where its primitives are at time 0, always on.
+    /// It moves at constant velocity and spin from its place at time 0.
     Steady {
-        /// Of its centre \[m/s\].
+        /// Velocity of its center \[m/s\].
         velocity: [f64; D],
-        /// About its centre, counter-clockwise about this direction \[rad/s\]; (0, 0, ω) in 2D.
+        /// Angular velocity about its center, counter-clockwise about this direction \[rad/s\]; (0, 0, ω) in 2D.
         spin: [f64; 3],
     },
-    /// From one to the next at constant speeds; before the first it is where the first says, after
-    /// the last where the last says. At least one, at ascending times.
+    /// It moves from each keyframe to the next at constant speed. Before the first and after the last it rests there. At
+    /// least one, at ascending times.
     Keyframes(Vec<Keyframe<D>>),
 }
 
-/// Where a collider is at a time.
+/// The place of a collider at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keyframe<const D: usize> {
-    /// \[s\]
+    /// The time \[s\].
     pub time: f64,
-    /// Where its centre is \[m\].
+    /// The place of its center \[m\].
     pub position: [f64; D],
-    /// How far it has turned about this direction, counter-clockwise \[rad\]; (0, 0, φ) in 2D.
+    /// The angle by which it has turned, counter-clockwise about this direction \[rad\]; (0, 0, φ) in 2D.
     pub turn: [f64; 3],
 }
 
 impl<const D: usize> Collider<D> {
-    /// A collider that stands still, and turns about its first primitive's middle if it is moved.
+    /// Makes a collider that stands still. Its center is the middle of its first primitive.
     pub fn still(name: impl Into<String>, primitives: Vec<Primitive<D>>, contact: Contact) -> Self {
         Self {
             name: name.into(),
@@ -59,10 +60,10 @@ impl<const D: usize> Collider<D> {
         }
     }
 
-    /// What cannot be simulated of it.
+    /// Checks that it can be simulated.
     ///
     /// # Errors
-    /// Names the key.
+    /// Names the key that is wrong.
     pub(crate) fn check(&self) -> Result<(), SetupError> {
         let error = |key: &str, message: String| {
             Err(SetupError {

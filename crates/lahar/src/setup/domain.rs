@@ -1,48 +1,48 @@
-//! The domain: its walls and what keeps particles inside, as plain data.
+//! The domain as plain data: its walls, and the boxes that keep particles inside.
 
 use crate::geometry::Bounds;
 
-/// The box that holds a scene.
+/// The box of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Domain<const D: usize> {
     /// Lower corner \[m\]; the origin of the nodes.
     pub min: [f64; D],
     /// Upper corner \[m\].
     pub max: [f64; D],
-    /// What is at the ends of each axis.
+    /// The two sides of each axis.
     pub sides: [Sides; D],
     /// How the walls act on the nodes.
     pub style: WallStyle,
 }
 
-/// A box that particles slow down to stay in: at the end of a substep, no velocity is left that
-/// would carry its particle out within `time`. One that is out already is brought back in that time.
+/// A box that particles slow down to stay in. At the end of a substep no particle has a velocity that would carry it out
+/// within `time`. A particle outside comes back in that time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cushion<const D: usize> {
-    /// The box.
+    /// The box that particles stay in.
     pub inside: Bounds<D>,
-    /// How far ahead it looks \[s\].
+    /// The time that it looks ahead \[s\].
     pub time: f64,
 }
 
-/// The two ends of an axis.
+/// The two sides of the domain on one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Sides {
-    /// What leaves at one end comes in at the other. The length must be a whole number of cells.
+    /// Material that leaves at one end comes in at the other. The length must be a whole number of cells.
     Periodic,
     /// A wall at each end.
     Walls {
-        /// At `min`.
+        /// The wall at `min`.
         low: Contact,
-        /// At `max`.
+        /// The wall at `max`.
         high: Contact,
     },
 }
 
-/// What a boundary does to velocity; v_n the component along its outward normal.
+/// The contact law of a boundary: how it constrains velocities.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contact {
-    /// No motion at all.
+    /// Material at the boundary moves with it.
     Sticky,
     /// No motion through it or away from it; Coulomb friction along it.
     Slip {
@@ -58,17 +58,16 @@ pub enum Contact {
     Open,
 }
 
-/// Where a wall takes hold.
+/// The nodes on which the walls of a domain act.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum WallStyle {
-    /// On the plane of the domain's side: nodes beyond it hold the mirror image of the material
-    /// inside, wherever the wall pushes.
+    /// The nodes at the plane of the domain's side. Nodes beyond it are the mirror image of the material inside, wherever
+    /// the wall pushes.
     #[default]
     Plane,
-    /// As in the Taichi examples: at all nodes with an index below `padding`, or above the last
-    /// minus `padding`.
+    /// As in the Taichi examples, all nodes with an index below `padding`, or above the last minus `padding`.
     Nodes {
-        /// Layers of nodes.
+        /// The number of layers of nodes.
         padding: u32,
     },
 }

@@ -1,19 +1,17 @@
 //! Forces besides stress and gravity: accelerations that depend on place and time, and drag.
 //!
-//! What depends on place and time only acts on nodes, where gravity does. What depends on where a
-//! particle *started* cannot: it changes the particles' velocities before they go to the grid.
-//! Either way every particle that a node's velocity is made of is accelerated alike, so what a
-//! force adds to the momentum is Σ m a Δt.
+//! A force that depends on place and time only acts on nodes, as gravity does. A force that depends on where a particle
+//! *started* cannot: it changes the particles' velocities before P2G. Either way all particles around a node are
+//! accelerated alike, so a force adds Σ m a Δt to the momentum.
 
 use crate::error::SetupError;
 use core::fmt::Debug;
 use std::sync::Arc;
 
-/// An acceleration at any place and time, from outside of this crate.
+/// An acceleration as a function of place and time, defined outside of this crate.
 pub trait AccelerationField<const D: usize>: Debug + Send + Sync {
-    /// Writes the acceleration \[m/s²\] at each of `positions` \[m\] at `time` \[s\] to `out`, which
-    /// is as long. `starts` \[m\] says where each of them started if [`Self::depends_on_start`],
-    /// and is empty else.
+    /// Writes the acceleration \[m/s²\] at each of `positions` \[m\] at `time` \[s\] to `out`, which is as long. `starts` are
+    /// the first positions of the particles \[m\] if [`Self::depends_on_start`], else empty.
     ///
     /// The same numbers must give the same bits, however they are divided among calls.
     fn accelerations(
@@ -24,13 +22,13 @@ pub trait AccelerationField<const D: usize>: Debug + Send + Sync {
         out: &mut [[f64; D]],
     );
 
-    /// Whether it needs to know where particles started.
+    /// Returns true if the acceleration depends on where particles started.
     fn depends_on_start(&self) -> bool {
         false
     }
 }
 
-/// One force.
+/// A force besides stress and gravity.
 #[derive(Clone, Debug)]
 pub enum Force<const D: usize> {
     /// An acceleration by a formula.
@@ -39,14 +37,14 @@ pub enum Force<const D: usize> {
     Central(Pull<D>),
     /// An acceleration around a point (in 3D around an axis through it), counter-clockwise.
     Vortex {
-        /// Where, and how strong.
+        /// The point and the strength.
         pull: Pull<D>,
         /// Unit vector of the axis; (0, 0, 1) in 2D.
         axis: [f64; 3],
     },
     /// Resistance of a medium: a = −rate (v − velocity).
     Drag {
-        /// How fast the difference decays \[1/s\].
+        /// Rate at which the difference decays \[1/s\].
         rate: f64,
         /// Velocity of the medium \[m/s\].
         velocity: [f64; D],
@@ -59,18 +57,18 @@ pub enum Force<const D: usize> {
 pub struct Pull<const D: usize> {
     /// The point \[m\].
     pub center: [f64; D],
-    /// A, the acceleration at the distance d \[m/s²\]; negative: the other way.
+    /// A, the acceleration at the distance d \[m/s²\]; a negative one points the other way.
     pub acceleration: f64,
-    /// d \[m\].
+    /// The distance d \[m\].
     pub distance: f64,
-    /// n: 2 for gravity of a point, 0 for the same everywhere, −1 for a spring.
+    /// The power n: 2 for gravity of a point, 0 for the same strength everywhere, −1 for a spring.
     pub power: f64,
-    /// Length below which the distance hardly counts \[m\].
+    /// The softening length: the acceleration hardly depends on smaller distances \[m\].
     pub softening: f64,
 }
 
 impl<const D: usize> Pull<D> {
-    /// A (d/s)ⁿ / s for a particle at the offset `r`: the acceleration over the offset \[1/s²\].
+    /// Returns A (d/s)ⁿ / s for a particle at the offset `r`: the acceleration over the offset \[1/s²\].
     fn per_offset(&self, r: [f64; 3]) -> f64 {
         let squared = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
         let s = (squared + self.softening * self.softening).sqrt();
@@ -83,8 +81,8 @@ impl<const D: usize> Pull<D> {
 }
 
 impl<const D: usize> Force<D> {
-    /// Accelerations \[m/s²\] at `positions` \[m\] and `time` \[s\] of particles that started at
-    /// `starts` \[m\]; none by drag, which depends on their velocities.
+    /// Returns the accelerations \[m/s²\] at `positions` \[m\] and `time` \[s\] of particles that started at `starts` \[m\].
+    /// Drag, which depends on velocities, gives none.
     pub fn accelerations(
         &self,
         time: f64,
@@ -96,7 +94,7 @@ impl<const D: usize> Force<D> {
         sum
     }
 
-    /// Whether it acts on particles, before they go to the grid.
+    /// Returns true if it acts on particles, before P2G.
     pub(crate) fn acts_on_particles(&self) -> bool {
         matches!(self, Self::Field(field) if field.depends_on_start())
     }

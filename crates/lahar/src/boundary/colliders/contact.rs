@@ -102,7 +102,7 @@ pub(crate) struct Scratch<const D: usize> {
     /// Leaders and their b of (14), follower after follower.
     leaders: Vec<(usize, f64)>,
     followers: Vec<Follower>,
-    /// By node.
+    /// The load of each node.
     loads: Vec<Load<D>>,
 }
 
@@ -121,9 +121,9 @@ struct Follower {
     index: usize,
     /// Its part of the list of leaders.
     leaders: core::ops::Range<usize>,
-    /// Σ b.
+    /// The sum Σ b over its leaders.
     sum: f64,
-    /// Σ |b|.
+    /// The sum Σ |b| over its leaders.
     size: f64,
 }
 
@@ -137,118 +137,23 @@ pub(crate) fn constrain<const D: usize>(
     total: &mut Impulse<D>,
     scratch: &mut Scratch<D>,
 ) {
-    let friction = match contact {
-        Contact::Open => return,
-        Contact::Sticky => 0.0,
-        Contact::Slip { friction } | Contact::Separate { friction } => friction,
-    };
-    let sticky = contact == Contact::Sticky;
-    let Scratch {
-        before,
-        changed,
-        leaders,
-        followers,
-        loads,
-    } = scratch;
-    before.clear();
-    before.extend_from_slice(nodes);
+    if contact == Contact::Open {
+        return;
+    }
+    scratch.before.clear();
+    scratch.before.extend_from_slice(nodes);
     for node in nodes.iter_mut() {
         node.velocity -= node.moving;
         node.before -= node.moving;
     }
-    changed.clear();
-    changed.resize(nodes.len(), false);
+    scratch.changed.clear();
+    scratch.changed.resize(nodes.len(), false);
+    scratch.find_followers(nodes, find, contact);
+    scratch.load_leaders(nodes, contact);
+    scratch.lead_followers(nodes, contact);
 
-    // Find the leaders of each follower.
-    leaders.clear();
-    followers.clear();
-    for (index, follower) in nodes.iter().enumerate() {
-        if follower.distance >= FREE_FROM {
-            continue;
-        }
-        let first = leaders.len();
-        find_leaders(follower, nodes, &find, leaders);
-        let own = &leaders[first..];
-        let pulled: f64 = own
-            .iter()
-            .map(|&(i, b)| b * nodes[i].velocity.dot(follower.normal))
-            .sum();
-        let leaves = follower.velocity.dot(follower.normal) - pulled >= 0.0;
-        if leaves && matches!(contact, Contact::Separate { .. }) {
-            leaders.truncate(first);
-            continue;
-        }
-        followers.push(Follower {
-            index,
-            sum: own.iter().map(|&(_, b)| b).sum(),
-            size: own.iter().map(|&(_, b)| b.abs()).sum(),
-            leaders: first..leaders.len(),
-        });
-    }
-
-    // (15), solved for the change.
-    let zero = Vector([0.0; D]);
-    let no_load = Load {
-        mass: Matrix([zero; D]),
-        momentum: zero,
-        before: zero,
-    };
-    loads.clear();
-    loads.resize(nodes.len(), no_load);
-    for follower in &*followers {
-        let g = nodes[follower.index];
-        let onto = |v: Vector<f64, D>| {
-            if sticky {
-                v
-            } else {
-                g.normal * v.dot(g.normal)
-            }
-        };
-        for &(i, b) in &leaders[follower.leaders.clone()] {
-            let carried = g.mass * b.abs() * follower.size;
-            let load = &mut loads[i];
-            load.mass += projector(g.normal, sticky) * carried;
-            load.momentum += onto(g.velocity) * (b * g.mass) - onto(nodes[i].velocity) * carried;
-            load.before += onto(g.before) * (b * g.mass) - onto(nodes[i].before) * carried;
-            changed[i] = true;
-        }
-    }
-    for (i, node) in nodes.iter_mut().enumerate() {
-        if changed[i] {
-            let mass = loads[i].mass + Matrix::scaled_identity(node.mass);
-            node.velocity += solved(mass, loads[i].momentum);
-            node.before += solved(mass, loads[i].before);
-        }
-    }
-
-    // (14), and friction.
-    for follower in &*followers {
-        let g = nodes[follower.index];
-        let led = |of: fn(&NearNode<D>) -> Vector<f64, D>| {
-            let mut followed = zero;
-            for &(i, b) in &leaders[follower.leaders.clone()] {
-                followed += of(&nodes[i]) * b;
-            }
-            if sticky {
-                followed
-            } else {
-                let own = of(&g);
-                own + g.normal * (followed - own).dot(g.normal)
-            }
-        };
-        let mut velocity = led(|node| node.velocity);
-        let velocity_before = led(|node| node.before);
-        if friction > 0.0 {
-            let impulse = (velocity - g.velocity).dot(g.normal) * (1.0 - follower.sum); // per mass g.mass
-            let normal = g.normal * velocity.dot(g.normal);
-            velocity = normal + shortened(velocity - normal, friction * impulse.max(0.0));
-        }
-        nodes[follower.index].velocity = velocity;
-        nodes[follower.index].before = velocity_before;
-        changed[follower.index] = true;
-    }
-
-    for ((node, before), changed) in nodes.iter_mut().zip(&*before).zip(&*changed) {
+    let before = scratch.before.iter();
+    for ((node, before), changed) in nodes.iter_mut().zip(before).zip(&scratch.changed) {
         if !*changed {
             *node = *before;
             continue;
@@ -258,6 +163,122 @@ pub(crate) fn constrain<const D: usize>(
         let change = (node.velocity - before.velocity) - (node.before - before.before) * blend;
         let at = node.node.map(|n| n as f64);
         total.add(at, change * -node.brought); // (13)
+    }
+}
+
+impl<const D: usize> Scratch<D> {
+    /// Finds the followers among `nodes`, and their leaders. A follower that leaves a collider with `Separate` contact is
+    /// let go.
+    fn find_followers(
+        &mut self,
+        nodes: &[NearNode<D>],
+        find: impl Fn([i64; D]) -> Option<usize>,
+        contact: Contact,
+    ) {
+        let Self {
+            leaders, followers, ..
+        } = self;
+        leaders.clear();
+        followers.clear();
+        for (index, follower) in nodes.iter().enumerate() {
+            if follower.distance >= FREE_FROM {
+                continue;
+            }
+            let first = leaders.len();
+            find_leaders(follower, nodes, &find, leaders);
+            let own = &leaders[first..];
+            let pulled: f64 = own
+                .iter()
+                .map(|&(i, b)| b * nodes[i].velocity.dot(follower.normal))
+                .sum();
+            let leaves = follower.velocity.dot(follower.normal) - pulled >= 0.0;
+            if leaves && matches!(contact, Contact::Separate { .. }) {
+                leaders.truncate(first);
+                continue;
+            }
+            followers.push(Follower {
+                index,
+                sum: own.iter().map(|&(_, b)| b).sum(),
+                size: own.iter().map(|&(_, b)| b.abs()).sum(),
+                leaders: first..leaders.len(),
+            });
+        }
+    }
+
+    /// Changes the velocities of leaders by the mass and momentum of their followers: (15), solved for the change.
+    fn load_leaders(&mut self, nodes: &mut [NearNode<D>], contact: Contact) {
+        let sticky = contact == Contact::Sticky;
+        let zero = Vector([0.0; D]);
+        let no_load = Load {
+            mass: Matrix([zero; D]),
+            momentum: zero,
+            before: zero,
+        };
+        self.loads.clear();
+        self.loads.resize(nodes.len(), no_load);
+        for follower in &self.followers {
+            let g = nodes[follower.index];
+            let onto = |v: Vector<f64, D>| {
+                if sticky {
+                    v
+                } else {
+                    g.normal * v.dot(g.normal)
+                }
+            };
+            for &(i, b) in &self.leaders[follower.leaders.clone()] {
+                let carried = g.mass * b.abs() * follower.size;
+                let load = &mut self.loads[i];
+                load.mass += projector(g.normal, sticky) * carried;
+                load.momentum +=
+                    onto(g.velocity) * (b * g.mass) - onto(nodes[i].velocity) * carried;
+                load.before += onto(g.before) * (b * g.mass) - onto(nodes[i].before) * carried;
+                self.changed[i] = true;
+            }
+        }
+        let loads = self.loads.iter().zip(&self.changed);
+        for (node, (load, _)) in nodes
+            .iter_mut()
+            .zip(loads)
+            .filter(|(_, (_, changed))| **changed)
+        {
+            let mass = load.mass + Matrix::scaled_identity(node.mass);
+            node.velocity += solved(mass, load.momentum);
+            node.before += solved(mass, load.before);
+        }
+    }
+
+    /// Sets the velocities of followers to those that their leaders give them, (14), with friction.
+    fn lead_followers(&mut self, nodes: &mut [NearNode<D>], contact: Contact) {
+        let sticky = contact == Contact::Sticky;
+        let friction = match contact {
+            Contact::Open | Contact::Sticky => 0.0,
+            Contact::Slip { friction } | Contact::Separate { friction } => friction,
+        };
+        for follower in &self.followers {
+            let g = nodes[follower.index];
+            let led = |of: fn(&NearNode<D>) -> Vector<f64, D>| {
+                let mut followed = Vector([0.0; D]);
+                for &(i, b) in &self.leaders[follower.leaders.clone()] {
+                    followed += of(&nodes[i]) * b;
+                }
+                if sticky {
+                    followed
+                } else {
+                    let own = of(&g);
+                    own + g.normal * (followed - own).dot(g.normal)
+                }
+            };
+            let mut velocity = led(|node| node.velocity);
+            let velocity_before = led(|node| node.before);
+            if friction > 0.0 {
+                let impulse = (velocity - g.velocity).dot(g.normal) * (1.0 - follower.sum); // per mass g.mass
+                let normal = g.normal * velocity.dot(g.normal);
+                velocity = normal + shortened(velocity - normal, friction * impulse.max(0.0));
+            }
+            nodes[follower.index].velocity = velocity;
+            nodes[follower.index].before = velocity_before;
+            self.changed[follower.index] = true;
+        }
     }
 }
 

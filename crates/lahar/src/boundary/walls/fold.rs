@@ -21,7 +21,7 @@ pub(crate) struct Triple<T, const D: usize> {
 /// One node of a triple.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TripleNode<T, const D: usize> {
-    /// \[kg\]
+    /// Mass of the node \[kg\].
     pub(crate) mass: T,
     /// Velocity after forces \[m/s\].
     pub(crate) velocity: Vector<T, D>,
