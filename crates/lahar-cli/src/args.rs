@@ -309,7 +309,7 @@ pub(crate) struct Render {
     #[arg(long, value_name = "QUANTITY")]
     pub(crate) color_by: Option<String>,
 
-    /// Renderer
+    /// Renderer of the pictures
     #[arg(long, value_name = "RENDERER", value_enum, default_value_t)]
     pub(crate) renderer: Renderer,
 

@@ -81,7 +81,7 @@ fn from_rotation<R: Real, const D: usize>(h: Matrix<R, D>) -> Matrix<R, D> {
     h - (polar(identity + h).rotation - identity)
 }
 
-/// A Aᵀ.
+/// Returns the product A Aᵀ.
 #[inline(always)]
 fn square<R: Real, const D: usize>(a: Matrix<R, D>) -> Matrix<R, D> {
     a * a.transpose()

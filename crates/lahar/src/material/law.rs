@@ -16,9 +16,9 @@ use fearless_simd::{Level, Simd};
 /// The state of one particle, as it follows from its strain and velocity gradient, in f64.
 #[derive(Clone, Debug)]
 pub struct ParticleState<const D: usize> {
-    /// J.
+    /// The Jacobian J.
     pub jacobian: f64,
-    /// F, `[i][j]`.
+    /// The deformation gradient F, row by row.
     pub deformation_gradient: [[f64; D]; D],
     /// −tr σ/d, with the Cauchy stress σ \[Pa\].
     pub pressure: f64,
@@ -27,9 +27,9 @@ pub struct ParticleState<const D: usize> {
 /// The volume and the energy of one particle, in f64.
 #[derive(Clone, Copy, Debug)]
 pub struct ParticleEnergy {
-    /// J.
+    /// The Jacobian J.
     pub jacobian: f64,
-    /// Φ \[Pa\].
+    /// The energy density Φ \[Pa\].
     pub energy_density: f64,
 }
 

@@ -44,7 +44,7 @@ macro_rules! models {
             Corotated "corotated" corotated,
             /// Neo-Hookean elasticity: rubber.
             NeoHookean "neo_hookean" neo_hookean,
-            /// Elastoplastic snow.
+            /// Elastoplastic snow that hardens.
             Snow "snow" snow,
             /// Linear elasticity for small strains and rotations.
             LinearElastic "linear_elastic" linear_elastic,
@@ -77,7 +77,7 @@ pub struct Material {
     pub name: String,
     /// Density at rest \[kg/m³; kg/m² in 2D per meter of depth\].
     pub density: f64,
-    /// The law.
+    /// The constitutive model.
     pub model: Model,
 }
 

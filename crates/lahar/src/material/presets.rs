@@ -3,7 +3,7 @@
 /// A named material of the model `M`. Scene files offer the same ones: `preset = "water"`.
 #[derive(Clone, Copy, Debug)]
 pub struct Preset<M> {
-    /// Its name.
+    /// The name in scene files.
     pub name: &'static str,
     /// One sentence on the substance, with the source of the numbers.
     pub about: &'static str,

@@ -35,7 +35,7 @@ const HARDENING_JACOBIAN: Variable = Variable::scalar("hardening_J", "1", Rest::
 variables! {
     /// The relative change of volume.
     pub struct Dilatation<R> {
-        /// J − 1.
+        /// The Jacobian less one, J − 1.
         jacobian_minus_one: R = JACOBIAN,
     }
 }

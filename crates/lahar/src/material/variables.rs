@@ -28,7 +28,7 @@ pub struct Variable {
     pub name: &'static str,
     /// Its unit; "1" for a ratio.
     pub unit: &'static str,
-    /// Its shape.
+    /// The shape of its value.
     pub shape: Shape,
     /// Its value at rest.
     pub rest: Rest,
@@ -40,7 +40,7 @@ pub struct Variable {
 /// The value of a variable in a particle that has never been deformed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Rest {
-    /// 0.
+    /// The value 0.
     Zero,
     /// 1, or the identity matrix. The variable is a ratio of volumes or lengths, and stored as its
     /// difference from 1; a scalar of this kind is positive.

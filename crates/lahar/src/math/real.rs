@@ -75,9 +75,9 @@ pub trait Real:
 
     /// `self * a + b`: fused where the instruction set fuses, two roundings on the portable one.
     fn mul_add(self, a: Self, b: Self) -> Self;
-    /// Square root.
+    /// Returns the square root.
     fn sqrt(self) -> Self;
-    /// Absolute value.
+    /// Returns the absolute value.
     fn abs(self) -> Self;
     /// The largest integer that is not above `self`.
     fn floor(self) -> Self;

@@ -3,9 +3,9 @@
 /// The shape of a quantity: one number, a vector or a matrix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Shape {
-    /// One number.
+    /// A single number.
     Scalar,
-    /// D numbers.
+    /// A vector of D numbers.
     Vector,
     /// D × D numbers, row by row.
     Matrix,

@@ -34,7 +34,7 @@ pub(super) struct Split<R: Real> {
     pub(super) right: Matrix<R, 3>,
     /// s: not negative where it is the largest; else with the sign of det F.
     pub(super) value: R,
-    /// G.
+    /// The remaining block G.
     pub(super) block: Matrix<R, 2>,
     /// The lanes in which s is the largest singular value; in the others it is the smallest.
     pub(super) is_largest: R::Mask,

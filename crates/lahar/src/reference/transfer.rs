@@ -127,7 +127,7 @@ impl<const D: usize> Reference<D> {
 /// A particle and one of the nodes it touches.
 pub(super) struct Touch<const D: usize> {
     pub(super) node: [i64; D],
-    /// Weight w.
+    /// Weight w of the node.
     pub(super) w: f64,
     /// Lever arm r = x_i − x_p \[m\].
     pub(super) r: Vector<f64, D>,

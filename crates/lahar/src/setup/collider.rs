@@ -16,7 +16,7 @@ pub struct Collider<const D: usize> {
     pub contact: Contact,
     /// The point that it turns about, in the coordinates of `primitives` \[m\].
     pub center: [f64; D],
-    /// Its motion.
+    /// Its motion over time.
     pub motion: Motion<D>,
 }
 

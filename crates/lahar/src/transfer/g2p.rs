@@ -132,11 +132,11 @@ struct Task<'a, T: Lanes, const D: usize> {
     lattice: &'a Lattice<D>,
     isa: IsaToken,
     dt: f64,
-    /// Δt / dx.
+    /// The factor Δt / dx.
     cells_per_velocity: f64,
-    /// 1 / dx.
+    /// The factor 1 / dx.
     per_dx: f64,
-    /// D⁻¹ dx.
+    /// The factor D⁻¹ dx.
     affine: f64,
 }
 
@@ -391,7 +391,7 @@ impl<T: Lanes, const D: usize> Task<'_, T, D> {
             for axis in 0..D {
                 gradient.0[axis] =
                     load_quads::<S, T, D>(simd, &sums.gradients[axis], p) * zero.lit(self.per_dx);
-                // B = Σ w v rᵀ = dx (Σ w v n − v s), n and s from the centre; C = B D⁻¹
+                // B = Σ w v rᵀ = dx (Σ w v n − v s), n and s from the center; C = B D⁻¹
                 let s = u[axis] - u[axis].floor() + zero.lit(K::OFFSET - K::CENTER as f64);
                 let moment = load_quads::<S, T, D>(simd, &sums.moments[1 + axis], p);
                 c.0[axis] = (moment - v * s) * zero.lit(self.affine); // (6), (3)

@@ -399,7 +399,7 @@ impl<T: Lanes, K: BSpline, const D: usize> Payload<T, D> for VolumePayload<K> {
 /// Mass, momentum and the impulse of stress, in a layer of its own if `SPLIT`; by the gradients of the weights if
 /// `CLASSIC`.
 struct MomentumPayload<K, const SPLIT: bool, const CLASSIC: bool> {
-    /// \[m\]
+    /// Distance of the nodes \[m\].
     dx: f64,
     /// Whether particles bring affine momentum.
     apic: bool,

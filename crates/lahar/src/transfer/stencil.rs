@@ -89,7 +89,7 @@ impl<T: Lanes> MomentumQuads<T> {
 /// The volumes that a chunk's particles bring.
 #[repr(align(64))]
 pub(crate) struct VolumeQuads<T> {
-    /// J − 1.
+    /// Volume changes J − 1.
     pub(crate) expansion: Rows<T>,
     /// The quads of [`Volume`](crate::grid::Volume).
     pub(crate) volumes: Quads<T>,

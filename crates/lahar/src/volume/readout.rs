@@ -80,7 +80,7 @@ trait Readout<T: Lanes, const D: usize>: Sync {
     ) -> T::Of<S>;
 }
 
-/// (7g)
+/// The gathered volume, (7g).
 struct Expansion<T> {
     /// dxᴰ \[m³; m² in 2D\].
     cell: T,
@@ -107,7 +107,7 @@ impl<T: Lanes, const D: usize> Readout<T, D> for Expansion<T> {
     }
 }
 
-/// (7h), (7i)
+/// The two corrections, (7h) and (7i).
 struct Correction {
     shares: VolumeCorrection,
 }

@@ -5,7 +5,7 @@ use crate::math::{Matrix, Real};
 /// The dependence of viscosity on the rate of shear.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Rheology {
-    /// Constant viscosity.
+    /// A constant viscosity.
     #[default]
     Newtonian,
     /// A yield stress and a power law are added.
