@@ -215,7 +215,7 @@ fn what_cannot_be_simulated_is_named() {
         kernel: Kernel::Linear,
         ..setup.clone()
     };
-    assert_eq!(key(&linear, &batch), "force");
+    assert_eq!(key(&linear, &batch), "kernel");
     let other = ParticleBatch {
         material: 1,
         ..batch.clone()
