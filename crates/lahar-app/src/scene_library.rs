@@ -66,7 +66,11 @@ impl SceneSource for SceneLibrary {
         let info = SceneInfo {
             domain: simulation.domain(),
             gravity: simulation.gravity(),
-            numbers: format!("{}, {}", simulation.precision(), simulation.backend().instruction_set),
+            numbers: format!(
+                "{}, {}",
+                simulation.precision(),
+                simulation.backend().instruction_set
+            ),
             warnings: built.warnings,
             ..scene_info(card, view)
         };

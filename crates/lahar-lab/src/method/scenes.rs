@@ -1,9 +1,9 @@
 //! Setups and bodies that the checks of the method run.
 
-use lahar::{Contact, Domain, Sides, WallStyle};
 use lahar::material::{
     Corotated, Dust, Eos, Fluid, HardeningFrom, Material, Model, NeoHookean, Snow, lame,
 };
+use lahar::{Contact, Domain, Sides, WallStyle};
 use lahar::{Deformation, ForceForm, Kernel, ParticleBatch, Setup, TimeStep, Transfer};
 
 use super::random::Random;

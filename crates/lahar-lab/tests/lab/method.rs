@@ -1,7 +1,7 @@
 //! The checks K1 to K8 on every engine, with every kernel, transfer scheme, form of the force and model, against limits.
 
-use lahar::{Contact, Domain, Sides, WallStyle};
 use lahar::kernel::{BSpline, Cubic, Linear, Quadratic};
+use lahar::{Contact, Domain, Sides, WallStyle};
 use lahar::{ForceForm, Kernel, Model, Setup, Transfer};
 use lahar_lab::method::conservation::{affine_change, free_fall, masses, momentum_change};
 use lahar_lab::method::energy::{Disc, Energies, excess};

@@ -8,8 +8,8 @@ use crate::fluids::PASTE;
 use fearless_simd::{Level, Simd, dispatch};
 use lahar::material::{
     ConstitutiveModel, Corotated, DisplacementGradient, Dust, Eos, Fluid, HardeningFrom,
-    JacobianUpdate, LOGARITHM_ENDS, LinearElastic, Model, NeoHookean, PlasticGradient,
-    Rheology, Snow, Strain, Variables, lame, lame_from_bulk_and_shear, preset, presets,
+    JacobianUpdate, LOGARITHM_ENDS, LinearElastic, Model, NeoHookean, PlasticGradient, Rheology,
+    Snow, Strain, Variables, lame, lame_from_bulk_and_shear, preset, presets,
 };
 use lahar::math::{Lanes, Matrix, Scalar, Vector, polar, svd};
 use lahar::{
