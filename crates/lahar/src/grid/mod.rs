@@ -13,7 +13,7 @@
 //! definition; it depends neither on threads nor on where the scene lies.
 //!
 //! A node has a *quad* of four numbers, or two quads where the transfer scheme keeps the impulse of stress apart. One
-//! quad of each node of a block or tile is a *layer*. What a quad means is the type of a [`NodeField`].
+//! quad of each node of a block or tile is a *layer*. What a quad means is the type of a `NodeField`.
 
 mod blocks;
 mod links;

@@ -64,7 +64,7 @@ pub struct Particle<const D: usize> {
     /// Affine matrix C \[1/s\], `affine[(i, j)]` = ∂v_i/∂x_j. All transfer schemes gather it; only APIC transfers it back to
     /// the grid.
     pub affine: Matrix<f64, D>,
-    /// The columns of its model's [`Strain`].
+    /// The columns of its model's [`Strain`](crate::material::Strain).
     pub strain: Vec<f64>,
 }
 
