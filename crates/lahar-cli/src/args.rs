@@ -9,6 +9,9 @@ use lahar_scene::scene::Comparison;
 
 use crate::recorded_frames::Frames;
 
+/// Help of `--set`; not a doc comment, which would take the brackets for a link.
+const SET_HELP: &str = "Set a key of the scene, as in --set dx=0.01 or --set 'bodies.column.velocity=[1,0]'; may be repeated";
+
 /// Simulates fluids, and the solids they meet, with the Moving Least Squares Material Point Method
 ///
 /// Without a command, a window opens on the default scene. Without a display, the same scene runs without a window and
@@ -77,8 +80,8 @@ pub(crate) struct View {
     #[arg(value_name = "SCENE|RUN")]
     pub(crate) scene_or_run: String,
 
-    /// Set a key of the scene, as in --set dx=0.01 or --set 'bodies.column.velocity=[1,0]'; may be repeated
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
+    /// Keys of the scene and their values.
+    #[arg(help = SET_HELP, long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
 
     /// Run the scene with several values of a key, side by side, as in --compare transfer=pic,apic
@@ -104,8 +107,8 @@ pub(crate) struct SceneArgs {
     /// A built-in scene's name (see `lahar list`) or a scene file
     pub(crate) scene: String,
 
-    /// Set a key of the scene, as in --set dx=0.01 or --set 'bodies.column.velocity=[1,0]'; may be repeated
-    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
+    /// Keys of the scene and their values.
+    #[arg(help = SET_HELP, long = "set", value_name = "KEY=VALUE", value_parser = assignment)]
     pub(crate) set: Vec<(String, String)>,
 
     /// Instruction set [default: the widest of this machine]

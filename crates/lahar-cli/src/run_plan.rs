@@ -48,7 +48,7 @@ pub(crate) struct Outputs {
 /// The formats in which frames are written.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) struct Formats {
-    /// Formats of particles, in the order of [`FORMATS`].
+    /// Formats of particles, in the order of the table of formats.
     pub(crate) particles: Vec<Format>,
     /// The number of frames per picture; 0: no pictures.
     pub(crate) png: u64,
