@@ -23,7 +23,8 @@
 //! let halos = Halos::of(&blocks);
 //! let (mut x, mut a_r) = (NodeVector::zeros(blocks.len()), NodeVector::zeros(blocks.len()));
 //! let mut r = NodeVector::zeros(blocks.len());
-//! r.block_mut(0)[20] = [1.0]; // b, and the first residual, since x is 0
+//! let block = 0;
+//! r.block_mut(block)[20] = [1.0]; // b, and the first residual, since x is 0
 //! for _ in 0..500 {
 //!     a_r.apply(&MinusLaplacian, &r, &halos);
 //!     let step = r.dot(&r) / r.dot(&a_r);

@@ -633,7 +633,7 @@ fn carries_waves<const D: usize>()
 where
     f64: lahar::Instance<D>,
 {
-    const CELLS: usize = 32;
+    const CELLS: usize = 40;
     const DENSITY: f64 = 2.0;
     const SPEED: f64 = 1e-3;
     let dx = 1.0 / CELLS as f64;
