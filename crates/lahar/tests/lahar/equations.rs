@@ -16,9 +16,15 @@ fn code() -> PathBuf {
     }
 }
 
-/// All numbers in brackets, such as `7` and `7g` in "(7), (7g)". Years have too many digits to count.
+/// All numbers in brackets, such as `7` and `7g` in "(7), (7g)". Years have too many digits to count, and the brackets
+/// of a call of a function follow its name.
 fn numbers(text: &str) -> Vec<&str> {
+    let is_call = |open: usize| {
+        let before = text[..open].chars().next_back();
+        before.is_some_and(|c| c.is_alphanumeric() || c == '_')
+    };
     text.match_indices('(')
+        .filter(|(open, _)| !is_call(*open))
         .filter_map(|(open, _)| {
             let rest = &text[open + 1..];
             let number = &rest[..rest.find(')')?];
