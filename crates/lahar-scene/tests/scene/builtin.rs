@@ -15,9 +15,9 @@ fn every_scene_can_be_read_and_built() {
         let built = scene
             .build(Isa::Portable)
             .unwrap_or_else(|error| panic!("{error}"));
-        // Programs that scenes follow number by number have fluids that are too soft for their speed of fall, and
+        // Programs that scenes repeat with the same numbers have fluids that are too soft for their speed of fall, and
         // particles far apart. The scenes warn of both.
-        let follows = builtin.text.contains("number by number") || builtin.name.starts_with("k7");
+        let follows = builtin.text.contains("same numbers") || builtin.name.starts_with("k7");
         let expected = |warning: &String| {
             warning.contains("visibly compressed") || warning.contains("fall apart into grains")
         };
